@@ -8,7 +8,7 @@ use crate::error::shortened;
 use crate::json;
 
 #[derive(Deserialize)]
-struct Entry {
+struct CameraRecord {
     #[serde(default)]
     id: serde_json::Value,
     img_name: Option<String>,
@@ -27,8 +27,8 @@ struct Entry {
 type DVec3Json = [f64; 3];
 
 pub(super) fn parse(json: &[u8]) -> Result<Vec<NamedCamera>, String> {
-    let entries: Vec<Entry> = json::parse(json)?;
-    let named = |(number, entry): (usize, Entry)| {
+    let entries: Vec<CameraRecord> = json::parse(json)?;
+    let named = |(number, entry): (usize, CameraRecord)| {
         let name = entry.img_name.unwrap_or_else(|| match &entry.id {
             serde_json::Value::Null => number.to_string(),
             id => id.to_string(),

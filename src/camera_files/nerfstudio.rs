@@ -17,11 +17,11 @@ type Pair = (f64, f64);
 struct Transforms {
     #[serde(flatten)]
     shared: Intrinsics,
-    frames: Vec<Frame>,
+    frames: Vec<TransformsFrame>,
 }
 
 #[derive(Deserialize)]
-struct Frame {
+struct TransformsFrame {
     #[serde(flatten)]
     own: Intrinsics,
     file_path: Option<String>,
@@ -117,7 +117,7 @@ impl Intrinsics {
 pub(super) fn parse(json: &[u8]) -> Result<Vec<NamedCamera>, String> {
     let file: Transforms = json::parse(json)?;
     let shared = file.shared;
-    let named = |(number, frame): (usize, Frame)| {
+    let named = |(number, frame): (usize, TransformsFrame)| {
         let name = frame.file_path.unwrap_or_else(|| number.to_string());
         let what = format!("frame {number} (`{}`)", shortened(&name));
         let intrinsics = frame.own.or(&shared);

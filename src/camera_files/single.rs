@@ -85,10 +85,10 @@ pub(super) fn parse(json: &[u8]) -> Result<Camera, String> {
 /// True for a list of our own cameras.
 pub(super) fn is_list(json: &[u8]) -> bool {
     #[derive(Deserialize)]
-    struct Entry {
+    struct CameraRecord {
         world_to_camera: Option<IgnoredAny>,
     }
-    let entries = serde_json::from_slice::<Vec<Entry>>(json);
+    let entries = serde_json::from_slice::<Vec<CameraRecord>>(json);
     entries.is_ok_and(|entries| entries.iter().any(|entry| entry.world_to_camera.is_some()))
 }
 

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use rara::{Clip, ClipOp, Headless};
-use rara_lab::bench::{self, Options};
+use rara_lab::bench::{self, BenchOptions};
 use rara_lab::table::Table;
 
 use super::camera::CameraArgs;
@@ -82,7 +82,7 @@ impl Bench {
         } else {
             clip
         };
-        let options = Options {
+        let options = BenchOptions {
             frames: self.frames,
             steps: self.steps,
             only: self.only,

@@ -6,7 +6,7 @@ use std::process::Command;
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use rara::{Error, HeadlessDesc};
-use rara_lab::run_time::{self, Options, Program};
+use rara_lab::run_time::{self, Program, RunTimeOptions};
 use rara_lab::table::Table;
 
 use super::failure::Failure;
@@ -71,7 +71,7 @@ impl Measure {
             output::make_folder(folder)?;
         }
         process::make_drivers_folder();
-        let options = Options {
+        let options = RunTimeOptions {
             sections: self.sections.clone(),
             quick: self.quick,
             scenes: self.scene_files.clone(),

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use rara::Headless;
 use rara_lab::cases::sources;
-use rara_lab::paper::{self, Options};
+use rara_lab::paper::{self, PaperOptions};
 
 use super::failure::Failure;
 use super::output::{self, Progress, say};
@@ -44,8 +44,8 @@ impl Paper {
         output::make_folder(&self.output)?;
         let sources = sources(&self.scenes, GENERATED)?;
         let mut options = match self.thorough {
-            true => Options::thorough(),
-            false => Options::quick(),
+            true => PaperOptions::thorough(),
+            false => PaperOptions::quick(),
         };
         if !self.scenes.is_empty() {
             options.timed = (0..sources.len().min(3)).collect();

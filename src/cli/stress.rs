@@ -3,7 +3,7 @@
 use clap::Args;
 use rara::Headless;
 use rara_lab::stress::regimes;
-use rara_lab::stress::{self, FormRow, Row};
+use rara_lab::stress::{self, FormRow, RegimeRow};
 use serde::Serialize;
 
 use super::failure::Failure;
@@ -35,7 +35,7 @@ pub(super) struct Stress {
 struct Document {
     device: String,
     driver: String,
-    rows: Vec<Row>,
+    rows: Vec<RegimeRow>,
 }
 
 impl Stress {
@@ -86,7 +86,7 @@ impl Stress {
     }
 }
 
-fn print(row: &Row) {
+fn print(row: &RegimeRow) {
     let weight = |form: &FormRow| format!("{:>8.1e}", form.weight);
     let weights: Vec<_> = row.forms.iter().map(weight).collect();
     let psnr = row.forms.iter().fold(f64::INFINITY, |a, f| a.min(f.psnr));

@@ -47,10 +47,10 @@ impl Study {
                 "--method is rara or exact: these are what a study compares with hard".into(),
             ));
         }
-        let options = study::Options {
+        let options = study::StudyOptions {
             method: self.method,
             cases: self.cases as usize,
-            ..study::Options::default()
+            ..study::StudyOptions::default()
         };
         process::make_drivers_folder();
         let mut progress = Progress::new("drawing");
@@ -96,7 +96,11 @@ pub(super) struct StudyReport {
 
 impl StudyReport {
     pub(super) fn run(self) -> Result<(), Failure> {
-        let evaluation = report::create(&self.answers, &self.output, &report::Options::default())?;
+        let evaluation = report::create(
+            &self.answers,
+            &self.output,
+            &report::ReportOptions::default(),
+        )?;
         if self.json {
             return Ok(output::json(&evaluation)?);
         }

@@ -27,7 +27,7 @@ pub struct NamedClip {
 }
 
 #[derive(Deserialize)]
-struct Entry {
+struct ClipFileEntry {
     name: Option<String>,
     layer: Option<String>,
     clip: Option<Node>,
@@ -36,7 +36,7 @@ struct Entry {
 }
 
 #[derive(Serialize)]
-struct Saved<'a> {
+struct ClipRecord<'a> {
     name: &'a str,
     #[serde(skip_serializing_if = "Option::is_none")]
     layer: Option<&'a str>,
@@ -233,7 +233,7 @@ impl<'de> Visitor<'de> for List {
     }
 
     fn visit_seq<A: SeqAccess<'de>>(mut self, mut list: A) -> std::result::Result<Self, A::Error> {
-        while let Some(entry) = list.next_element::<Entry>()? {
+        while let Some(entry) = list.next_element::<ClipFileEntry>()? {
             let clip = entry.named(self.0.len()).map_err(A::Error::custom)?;
             self.0.push(clip);
         }
@@ -241,7 +241,7 @@ impl<'de> Visitor<'de> for List {
     }
 }
 
-impl Entry {
+impl ClipFileEntry {
     /// The clip of the element of this number.
     fn named(self, number: usize) -> std::result::Result<NamedClip, String> {
         let clip = match (self.clip, self.normal, self.d) {
@@ -265,7 +265,7 @@ impl Entry {
 
 /// The JSON that [`clips_from_json`] reads.
 pub fn clips_to_json(clips: &[NamedClip]) -> String {
-    let saved = clips.iter().map(|named| Saved {
+    let saved = clips.iter().map(|named| ClipRecord {
         name: &named.name,
         layer: named.layer.as_deref(),
         clip: &named.clip,

@@ -75,7 +75,7 @@ enum Type {
 
 /// The facts known about an id of the module.
 #[derive(Debug, Clone, Default)]
-struct Known {
+struct TypeTable {
     name: String,
     ty: Option<Type>,
     member_names: Vec<(u32, String)>,
@@ -113,7 +113,7 @@ pub(crate) fn declarations(words: &[u32]) -> Declarations {
     const STORAGE_BUFFER: u32 = 12;
     const PUSH_CONSTANT: u32 = 9;
     let all = instructions(words);
-    let mut known = vec![Known::default(); words[3] as usize];
+    let mut known = vec![TypeTable::default(); words[3] as usize];
     let (mut variables, mut specs, mut composites) = (Vec::new(), Vec::new(), Vec::new());
     let mut found = Declarations::default();
     for (code, instruction) in all {
@@ -191,7 +191,7 @@ pub(crate) fn declarations(words: &[u32]) -> Declarations {
 }
 
 /// Notes a decoration of an id, or of one of its members.
-fn decorate(known: &mut Known, decoration: &[u32]) {
+fn decorate(known: &mut TypeTable, decoration: &[u32]) {
     match decoration[0] {
         1 => known.spec_id = Some(decoration[1]),
         11 if decoration[1] == 25 => known.is_workgroup_size = true,
@@ -202,7 +202,7 @@ fn decorate(known: &mut Known, decoration: &[u32]) {
     }
 }
 
-fn buffer(variable: &Known, block: &Known) -> Buffer {
+fn buffer(variable: &TypeTable, block: &TypeTable) -> Buffer {
     let no_write = variable.no_write || block.no_write;
     let no_read = variable.no_read || block.no_read;
     let binding = variable.binding;
@@ -218,7 +218,7 @@ fn buffer(variable: &Known, block: &Known) -> Buffer {
 }
 
 /// The members of the struct that a push constant block holds as `params`.
-fn params(known: &[Known], block: usize) -> Vec<Param> {
+fn params(known: &[TypeTable], block: usize) -> Vec<Param> {
     let member = |of: usize, name: &str| {
         let mut names = known[of].member_names.iter();
         names.find(|(_, n)| n == name).map(|(at, _)| *at as usize)

@@ -75,9 +75,9 @@ impl Support {
     ///
     /// # Safety
     /// As for [`set_features`](Self::set_features).
-    unsafe fn set_in(&self, p_next: *mut c_void) -> Found {
+    unsafe fn set_in(&self, p_next: *mut c_void) -> OfferedFeatures {
         use vk::StructureType as Type;
-        let mut found = Found::default();
+        let mut found = OfferedFeatures::default();
         let full_subgroups = self.full_subgroups[1] > 0;
         let mut next = p_next.cast::<vk::BaseOutStructure<'_>>();
         // SAFETY: each struct of the caller's chain begins with its type, which says what it is, and with a pointer to the
@@ -181,7 +181,7 @@ impl Support {
 
 /// Which features a chain has structs for.
 #[derive(Default)]
-struct Found {
+struct OfferedFeatures {
     address: bool,
     synchronization: bool,
     rendering: bool,

@@ -32,10 +32,10 @@ pub struct BufferDesc<'a> {
 ///
 /// The device must be done with it by then: who submits work waits for it first.
 #[derive(Clone)]
-pub struct Buffer(Arc<Owned>);
+pub struct Buffer(Arc<BufferInner>);
 
 /// A buffer and its memory.
-struct Owned {
+struct BufferInner {
     device: Device,
     handle: vk::Buffer,
     address: u64,
@@ -112,7 +112,7 @@ impl Buffer {
             }
         };
         // From here on dropping `buffer` cleans up.
-        let mut buffer = Owned {
+        let mut buffer = BufferInner {
             device: device.clone(),
             handle,
             address: 0,
@@ -220,13 +220,13 @@ impl Buffer {
     }
 }
 
-impl Owned {
+impl BufferInner {
     fn allocation(&self) -> &Memory {
         self.allocation.as_ref().expect("taken only by drop")
     }
 }
 
-impl Drop for Owned {
+impl Drop for BufferInner {
     fn drop(&mut self) {
         // SAFETY: whoever submitted work with the buffer waited for it, as the type's contract says.
         unsafe { self.device.raw().destroy_buffer(self.handle, None) };

@@ -26,7 +26,7 @@ struct Chain {
     transform: vk::SurfaceTransformFlagsKHR,
     /// The window's size for which it was made, as the window system reported it.
     window: (u32, u32),
-    images: Vec<Presented>,
+    images: Vec<SwapchainImage>,
     /// True when it must be made anew before the next frame.
     outdated: bool,
     /// True when another might fit better, although it works.
@@ -35,7 +35,7 @@ struct Chain {
     takes_copies: bool,
 }
 
-struct Presented {
+struct SwapchainImage {
     image: vk::Image,
     view: vk::ImageView,
     /// Signalled when the image is drawn. One for each image and not for each frame in flight: only acquiring the image
@@ -157,7 +157,7 @@ impl Swapchain {
                 .view_type(vk::ImageViewType::TYPE_2D)
                 .format(self.format.format)
                 .subresource_range(WHOLE);
-            chain.images.push(Presented {
+            chain.images.push(SwapchainImage {
                 image,
                 view: vk::ImageView::null(),
                 drawn: vk::Semaphore::null(),

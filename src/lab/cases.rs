@@ -86,7 +86,7 @@ impl Source {
 /// How a scene is cut.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Cut {
+pub enum CaseCut {
     /// By a plane that faces the camera obliquely, so that the cut surface is seen.
     Face,
     /// By a plane that contains the direction of view, so that the cut is an edge.
@@ -95,7 +95,7 @@ pub enum Cut {
     Bite,
 }
 
-impl Cut {
+impl CaseCut {
     /// All of them.
     pub const ALL: [Self; 3] = [Self::Face, Self::Edge, Self::Bite];
 
@@ -125,7 +125,7 @@ pub struct Case {
     /// The number of the scene.
     pub scene: usize,
     /// How it is cut.
-    pub cut: Cut,
+    pub cut: CaseCut,
     /// From where it is seen.
     pub camera: Camera,
     direction: DVec3,
@@ -146,7 +146,7 @@ impl Case {
     /// If the scene has no extent.
     pub fn at(&self, share: f64) -> Result<Clip> {
         let along = self.range[0] + share * (self.range[1] - self.range[0]);
-        if self.cut != Cut::Bite {
+        if self.cut != CaseCut::Bite {
             return Ok(Clip::of([Plane::new(self.direction, -along)?], ClipOp::And));
         }
         let reach = self.range[1] - self.range[0];
@@ -174,7 +174,7 @@ pub fn cases(scenes: &[Source], up: DVec3, size: (u32, u32)) -> Result<Vec<Case>
             )));
         }
         let camera = Camera::frame(&Bounds::of(&source.gaussians), up, 40.0, size)?;
-        for cut in Cut::ALL {
+        for cut in CaseCut::ALL {
             let direction = cut.direction(&camera);
             let along = |p: &glam::Vec3| direction.dot(p.as_dvec3());
             let mut places: Vec<f64> = source.gaussians.positions().iter().map(along).collect();

@@ -45,7 +45,7 @@ pub fn picture(
 
 /// A frame that was timed.
 #[derive(Debug, Clone)]
-pub(crate) struct Timed {
+pub(crate) struct FrameTime {
     pub(crate) stats: FrameStats,
     /// What this process took on all cores, milliseconds; 0 where the system does not count it.
     pub(crate) processor_ms: f64,
@@ -57,11 +57,11 @@ pub(crate) fn timed(
     camera: &Camera,
     clip: &Clip,
     settings: &Settings,
-) -> Result<Timed> {
+) -> Result<FrameTime> {
     let before = processor_ms();
     let stats = fresh(headless, camera, clip, settings)?;
     let processor_ms = processor_ms() - before;
-    Ok(Timed {
+    Ok(FrameTime {
         stats,
         processor_ms,
     })

@@ -17,14 +17,14 @@ use crate::{Camera, Error, Result};
 
 /// The kinds of picture file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kind {
+enum PictureFormat {
     /// 8-bit RGBA, un-premultiplied.
     Png,
     /// 32-bit float RGBA, premultiplied.
     Exr,
 }
 
-impl Kind {
+impl PictureFormat {
     fn of(path: &Path) -> Result<Self> {
         let extension = path
             .extension()
@@ -62,7 +62,7 @@ impl Picture {
     /// all.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
         let path = path.as_ref();
-        let kind = Kind::of(path)?;
+        let kind = PictureFormat::of(path)?;
         let encoded = self.encoded(kind, PngCompression::default());
         let bytes = encoded.map_err(|error| {
             Error::format(path, format!("the picture could not be encoded: {error}"))
@@ -92,7 +92,7 @@ impl Picture {
                 counted(self.pixels.len(), "pixel")
             )));
         }
-        let encoded = self.encoded(Kind::Png, compression);
+        let encoded = self.encoded(PictureFormat::Png, compression);
         encoded
             .map_err(|error| Error::Invalid(format!("the picture could not be encoded: {error}")))
     }
@@ -106,11 +106,11 @@ impl Picture {
             .collect()
     }
 
-    fn encoded(&self, kind: Kind, compression: PngCompression) -> ImageResult<Vec<u8>> {
+    fn encoded(&self, kind: PictureFormat, compression: PngCompression) -> ImageResult<Vec<u8>> {
         let mut bytes = Vec::new();
         let (width, height) = (self.width, self.height);
         match kind {
-            Kind::Png => {
+            PictureFormat::Png => {
                 let compression = match compression {
                     PngCompression::None => CompressionType::Uncompressed,
                     PngCompression::Fast => CompressionType::Fast,
@@ -119,7 +119,7 @@ impl Picture {
                 PngEncoder::new_with_quality(&mut bytes, compression, FilterType::Adaptive)
                     .write_image(&self.to_rgba8(), width, height, ExtendedColorType::Rgba8)
             }
-            Kind::Exr => {
+            PictureFormat::Exr => {
                 let pixels = bytemuck::cast_slice(&self.pixels);
                 let encoder = OpenExrEncoder::new(Cursor::new(&mut bytes));
                 encoder.write_image(pixels, width, height, ExtendedColorType::Rgba32F)

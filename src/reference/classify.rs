@@ -12,16 +12,16 @@ use super::cutoff::is_beam;
 use super::footprint::Footprint;
 use super::real::{Real, vec3};
 use super::region::{
-    HalfSpace, Reduced, Side, gaussian_side, reduced, surface_gaussian_side, surface_half_space,
+    HalfSpace, RegionRest, Side, gaussian_side, reduced, surface_gaussian_side, surface_half_space,
 };
-use super::view::View;
+use super::view::ViewTransform;
 use crate::limits::{ALPHA_MIN_INVERSE, BEYOND_EYE, WIDENING_REST};
 use crate::{Clip, Gaussians, Mode, Settings, Surface};
 
 /// The side of every Gaussian of the scene.
 pub fn classify<T: Real>(
     scene: &Gaussians,
-    view: &View<T>,
+    view: &ViewTransform<T>,
     clip: &Clip,
     settings: &Settings,
 ) -> Vec<Side> {
@@ -88,7 +88,7 @@ pub fn left<T: Real>(
     footprint: &Footprint<T>,
     clip: &Clip,
     settings: &Settings,
-) -> Reduced<T> {
+) -> RegionRest<T> {
     let deviations = band(scene, index, footprint, settings);
     reduced(scene, index, &footprint.axes, deviations, clip, settings)
 }

@@ -8,7 +8,7 @@ use crate::Miss;
 
 /// A cut splat and its surfaces.
 #[derive(Debug, Clone)]
-pub struct Combined<T> {
+pub struct CombinedCut<T> {
     /// Image derivatives at the splat's centre, pixels.
     pub gradients: [Vec3<T>; 2],
     /// By how much they change a pixel, `m3 / Z`; nothing where the weight is that of the footprint.
@@ -21,7 +21,7 @@ pub struct Combined<T> {
     pub chord: Option<(T, Miss)>,
 }
 
-impl<T: Real> Combined<T> {
+impl<T: Real> CombinedCut<T> {
     /// The visible share at an offset from the splat's centre, pixels.
     pub fn weight(&self, dx: T, dy: T) -> T {
         let [b1, b2] = self.gradients;

@@ -2,17 +2,17 @@
 
 use super::chord::Chord;
 use super::classify::{cutting, left, side};
-use super::combined::Combined;
+use super::combined::CombinedCut;
 use super::exact::{AffinePlane, Beam};
 use super::footprint::Footprint;
 use super::real::{Real, Vec3};
-use super::region::{self, Combination, HalfSpace, Reduced, Side};
-use super::view::View;
+use super::region::{self, Combination, HalfSpace, RegionRest, Side};
+use super::view::ViewTransform;
 use crate::{Clip, ClipOp, ExactForm, Gaussians, Mode, Projection, Settings};
 
 /// The record of a cut splat: everything that its weight in a pixel depends on.
 #[derive(Debug, Clone)]
-pub enum Cut<T> {
+pub enum SplatCut<T> {
     /// The exact share, affine in the pixel within each half-space's normal distribution function.
     Affine {
         /// The half-spaces that are kept of the splat.
@@ -25,23 +25,23 @@ pub enum Cut<T> {
     /// The paper's length ratio.
     Chord(Chord<T>),
     /// Either of surfaces that bend or combine in some other way than a list of planes does.
-    Combined(Combined<T>),
+    Combined(CombinedCut<T>),
     /// Less than the region's own test sees: all or nothing is kept.
     Decided(bool),
 }
 
-impl<T: Real> Cut<T> {
+impl<T: Real> SplatCut<T> {
     /// The visible share of the splat at an offset from its centre in pixels: 0 to 1.
     pub fn weight(&self, dx: T, dy: T) -> T {
         match self {
-            Cut::Affine { planes, op } => {
+            SplatCut::Affine { planes, op } => {
                 region::share(*op, planes.iter().map(|plane| plane.threshold(dx, dy)))
             }
-            Cut::Beam(beam) => beam.weight(dx, dy),
-            Cut::Chord(chord) => chord.weight(dx, dy),
-            Cut::Combined(combined) => combined.weight(dx, dy),
-            Cut::Decided(true) => T::one(),
-            Cut::Decided(false) => T::zero(),
+            SplatCut::Beam(beam) => beam.weight(dx, dy),
+            SplatCut::Chord(chord) => chord.weight(dx, dy),
+            SplatCut::Combined(combined) => combined.weight(dx, dy),
+            SplatCut::Decided(true) => T::one(),
+            SplatCut::Decided(false) => T::zero(),
         }
     }
 }
@@ -51,10 +51,10 @@ pub fn cutoff<T: Real>(
     scene: &Gaussians,
     index: usize,
     footprint: &Footprint<T>,
-    view: &View<T>,
+    view: &ViewTransform<T>,
     clip: &Clip,
     settings: &Settings,
-) -> Option<Cut<T>> {
+) -> Option<SplatCut<T>> {
     if side(scene, index, footprint, clip, settings) != Side::Cutoff {
         return None;
     }
@@ -73,13 +73,13 @@ pub fn cutoff<T: Real>(
     let reduced = left(scene, index, footprint, clip, settings);
     let op = reduced.as_planes();
     Some(match (reduced, op) {
-        (Reduced::Decided(kept), _) => Cut::Decided(kept),
-        (Reduced::Cut(surfaces), Some(op)) => {
+        (RegionRest::Decided(kept), _) => SplatCut::Decided(kept),
+        (RegionRest::Cut(surfaces), Some(op)) => {
             let half_spaces = surfaces.iter().map(|(surface, _)| surface.half_space);
             let half_spaces = half_spaces.collect();
             of_planes(scene, index, footprint, view, half_spaces, op, settings)
         }
-        (Reduced::Cut(surfaces), None) => {
+        (RegionRest::Cut(surfaces), None) => {
             let is_chord = settings.mode == Mode::Rara;
             let follows_rays = is_chord || is_beam(scene, index, footprint, settings);
             let front = HalfSpace {
@@ -90,7 +90,7 @@ pub fn cutoff<T: Real>(
                 true => footprint.projection == Projection::Perspective,
                 false => follows_rays && footprint.holds_the_eye(),
             };
-            Cut::Combined(Combined {
+            SplatCut::Combined(CombinedCut {
                 gradients: match follows_rays {
                     true => footprint.true_gradients(view),
                     false => footprint.gradients,
@@ -112,13 +112,13 @@ fn of_planes<T: Real>(
     scene: &Gaussians,
     index: usize,
     footprint: &Footprint<T>,
-    view: &View<T>,
+    view: &ViewTransform<T>,
     half_spaces: Vec<HalfSpace<T>>,
     op: ClipOp,
     settings: &Settings,
-) -> Cut<T> {
+) -> SplatCut<T> {
     match settings.mode {
-        Mode::Rara => Cut::Chord(Chord {
+        Mode::Rara => SplatCut::Chord(Chord {
             gradients: footprint.true_gradients(view),
             lean: footprint.lean(),
             front: (footprint.projection == Projection::Perspective).then_some(HalfSpace {
@@ -131,9 +131,9 @@ fn of_planes<T: Real>(
             miss: settings.miss,
         }),
         _ if is_beam(scene, index, footprint, settings) => {
-            Cut::Beam(Beam::new(footprint, view, half_spaces, op))
+            SplatCut::Beam(Beam::new(footprint, view, half_spaces, op))
         }
-        _ => Cut::Affine {
+        _ => SplatCut::Affine {
             planes: half_spaces
                 .iter()
                 .map(|half_space| AffinePlane::new(footprint.gradients, half_space))

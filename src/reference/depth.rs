@@ -19,12 +19,12 @@ use super::classify::cutting_surfaces;
 use super::footprint::{Footprint, determinant, scaled};
 use super::real::{Real, Vec3};
 use super::region::surface_half_space;
-use super::{SeenLayer, layer, splat};
+use super::{LayerView, layer, splat};
 use crate::{Camera, Clip, ClipOp, Gaussians, Mode, Scene, Settings};
 
 /// A linear function of u given a pixel: `at + slope . delta`, over its deviation.
 #[derive(Debug, Clone, Copy)]
-struct Bound<T> {
+struct DepthLimit<T> {
     z: [T; 3],
     /// Covariance with the depth over the deviation.
     shift: T,
@@ -35,13 +35,13 @@ struct Bound<T> {
 pub struct SplatDepth<T> {
     /// The whole splat's mean depth at its centre, and how that changes a pixel across and down.
     mean: [T; 3],
-    far: Bound<T>,
-    near: Bound<T>,
+    far: DepthLimit<T>,
+    near: DepthLimit<T>,
     op: ClipOp,
 }
 
 /// The distribution of u given a pixel.
-struct Given<T> {
+struct PixelConditional<T> {
     gradients: [Vec3<T>; 2],
     across: Vec3<T>,
     factor: T,
@@ -49,7 +49,7 @@ struct Given<T> {
     det: T,
 }
 
-impl<T: Real> Given<T> {
+impl<T: Real> PixelConditional<T> {
     fn new(footprint: &Footprint<T>) -> Self {
         let ([b1, b2], factor, low_pass) = scaled(footprint.gradients);
         let across = b1.cross(b2);
@@ -92,10 +92,10 @@ impl<T: Real> SplatDepth<T> {
         clip: &Clip,
         settings: &Settings,
     ) -> Self {
-        let given = Given::new(footprint);
+        let given = PixelConditional::new(footprint);
         let m3 = footprint.rows[2];
         let [x, y] = given.slope(m3);
-        let open = Bound {
+        let open = DepthLimit {
             z: [T::of(FARTHEST), T::zero(), T::zero()],
             shift: T::zero(),
         };
@@ -128,7 +128,7 @@ impl<T: Real> SplatDepth<T> {
             let deviation = given.covariance(a, a).max(T::of(1e-30)).sqrt();
             let z = half_space.offset / size / deviation;
             let [x, y] = given.slope(a).map(|v| v / deviation);
-            let threshold = Bound {
+            let threshold = DepthLimit {
                 z: [z, x, y],
                 shift: given.covariance(a, m3) / deviation,
             };
@@ -195,7 +195,7 @@ pub fn expected<'a, T: Real>(
     for splat in &splats {
         let footprint = &splat.footprint;
         let (layer, index) = places[splat.index as usize];
-        let SeenLayer {
+        let LayerView {
             gaussians, clip, ..
         } = &layers[layer];
         let depth = SplatDepth::new(gaussians, index, footprint, clip, settings);

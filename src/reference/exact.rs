@@ -12,7 +12,7 @@ use super::footprint::{Footprint, determinant, scaled};
 use super::orthant::{Direction, Threshold};
 use super::real::{Real, Vec3};
 use super::region::{HalfSpace, share};
-use super::view::View;
+use super::view::ViewTransform;
 use crate::ClipOp;
 
 /// The function of a half-space given a pixel: normal with mean `mean[0] + mean[1] dx + mean[2] dy`.
@@ -142,7 +142,7 @@ impl<T: Real> Beam<T> {
     /// The form for a splat and the half-spaces that surfaces keep of it.
     pub fn new(
         footprint: &Footprint<T>,
-        view: &View<T>,
+        view: &ViewTransform<T>,
         half_spaces: Vec<HalfSpace<T>>,
         op: ClipOp,
     ) -> Self {

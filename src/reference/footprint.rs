@@ -11,7 +11,7 @@
 use glam::{Quat, Vec3 as Point};
 
 use super::real::{Real, Vec3, vec3};
-use super::view::View;
+use super::view::ViewTransform;
 use crate::limits::{ALPHA_MIN_INVERSE, COMPENSATION_SQUARE_MIN, LOW_PASS};
 use crate::{Gaussians, Projection};
 
@@ -59,7 +59,7 @@ impl<T: Real> Footprint<T> {
     /// The opacity of an antialiased one is multiplied by the root of `det B B^T / det (B B^T + LOW_PASS I)`: then the
     /// footprint that the low-pass has made larger has as much light in it as the one without (the 2D Mip filter of
     /// Yu et al. 2024). Trainers bound the ratio from below ([`COMPENSATION_SQUARE_MIN`]).
-    pub fn new(scene: &Gaussians, index: usize, view: &View<T>) -> Option<Self> {
+    pub fn new(scene: &Gaussians, index: usize, view: &ViewTransform<T>) -> Option<Self> {
         let relative = view.relative(scene.positions()[index]);
         let view_centre = view.turn(relative);
         let whole = T::of(f64::from(scene.opacities()[index]));
@@ -72,7 +72,7 @@ impl<T: Real> Footprint<T> {
         let rows = view
             .rows
             .map(|row| vec3(row.dot(axes[0]), row.dot(axes[1]), row.dot(axes[2])));
-        let seen = Seen::new(view.projection, &rows, view_centre);
+        let seen = ProjectedCentre::new(view.projection, &rows, view_centre);
         let slopes = seen.slopes;
         let clamp = |axis: usize| {
             slopes[axis]
@@ -121,7 +121,7 @@ impl<T: Real> Footprint<T> {
     }
 
     /// Image derivatives at the centre's true direction, for computations along true rays.
-    pub fn true_gradients(&self, view: &View<T>) -> [Vec3<T>; 2] {
+    pub fn true_gradients(&self, view: &ViewTransform<T>) -> [Vec3<T>; 2] {
         let seen = self.seen();
         seen.gradients(view.focal, seen.slopes)
     }
@@ -141,8 +141,8 @@ impl<T: Real> Footprint<T> {
             && self.view_centre.z < self.reach * self.rows[2].length()
     }
 
-    fn seen(&self) -> Seen<T> {
-        Seen::new(self.projection, &self.rows, self.view_centre)
+    fn seen(&self) -> ProjectedCentre<T> {
+        ProjectedCentre::new(self.projection, &self.rows, self.view_centre)
     }
 
     /// The exponent q of the footprint `exp(-q / 2)` at an offset from its centre, pixels. It is a sum of two squares:
@@ -210,7 +210,7 @@ pub(crate) fn half_axes<T: Real>(scale: Point, rotation: Quat) -> [Vec3<T>; 3] {
 }
 
 /// A centre in homogeneous coordinates, and how they change by u.
-struct Seen<T> {
+struct ProjectedCentre<T> {
     /// X / w and Y / w.
     slopes: [T; 2],
     w: T,
@@ -219,7 +219,7 @@ struct Seen<T> {
     w_gradient: Vec3<T>,
 }
 
-impl<T: Real> Seen<T> {
+impl<T: Real> ProjectedCentre<T> {
     fn new(projection: Projection, &[m1, m2, m3]: &[Vec3<T>; 3], centre: Vec3<T>) -> Self {
         let (w, w_gradient) = match projection {
             Projection::Perspective => (centre.z, m3),

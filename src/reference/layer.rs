@@ -3,17 +3,17 @@
 use std::borrow::Cow;
 
 use super::real::Real;
-use super::view::View;
+use super::view::ViewTransform;
 use crate::scene::Numbers;
 use crate::{Camera, Clip, Gaussians, Layer, Scene};
 
 /// A layer with what a frame asks of it.
 #[derive(Debug, Clone)]
-pub struct SeenLayer<'a, T> {
+pub struct LayerView<'a, T> {
     /// Its Gaussians, as opaque as the layer leaves them.
     pub gaussians: Cow<'a, Gaussians>,
     /// Its view, from the camera in its own space.
-    pub view: View<T>,
+    pub view: ViewTransform<T>,
     /// Its clip, in its own space.
     pub clip: Clip,
     /// The numbers of its Gaussians in the scene.
@@ -27,15 +27,15 @@ pub fn layers<'a, T: Real>(
     scene: &Scene<'a>,
     camera: &Camera,
     clip: &Clip,
-) -> Vec<SeenLayer<'a, T>> {
+) -> Vec<LayerView<'a, T>> {
     // The renderer refuses a camera with planes that mean nothing.
     let seen_of = |clip| camera.sees_of(clip).unwrap_or(Cow::Borrowed(clip));
     let seen = scene.layers().iter().zip(scene.numbers());
     let seen = seen.map(|(layer, numbers)| {
         let state = layer.state();
-        SeenLayer {
+        LayerView {
             gaussians: faded(layer),
-            view: View::in_layer(camera, &state.placement),
+            view: ViewTransform::in_layer(camera, &state.placement),
             clip: seen_of(layer.clip().unwrap_or(clip)).in_scene(&state.placement),
             numbers,
             visible: state.visible,

@@ -27,19 +27,19 @@ pub mod sort;
 pub mod splat;
 mod view;
 
-pub use cutoff::Cut;
+pub use cutoff::SplatCut;
 pub use footprint::Footprint;
-pub use layer::SeenLayer;
+pub use layer::LayerView;
 pub use project::Splat;
 pub use real::{Real, Vec3, vec3};
 pub use region::{HalfSpace, Side};
-pub use view::View;
+pub use view::ViewTransform;
 
 use crate::{Camera, Clip, Counts, Picture, Scene, Settings};
 
 /// A rendered frame.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Frame {
+pub struct ReferenceFrame {
     /// The picture, rounded to f32 at the very end.
     pub picture: Picture,
     /// How many Gaussians ended where.
@@ -52,21 +52,21 @@ pub fn render<'a, T: Real>(
     camera: &Camera,
     clip: &Clip,
     settings: &Settings,
-) -> Frame {
+) -> ReferenceFrame {
     let layers = layer::layers(&scene.into(), camera, clip);
     // Find each Gaussian's side.
     let sides: Vec<_> = layers.iter().map(|layer| sides(layer, settings)).collect();
     let splats = in_order::<T>(&layers, &sides, settings);
     // Blend them.
-    let picture = splat::splat(&splats, &View::new(camera), settings);
-    Frame {
+    let picture = splat::splat(&splats, &ViewTransform::new(camera), settings);
+    ReferenceFrame {
         picture,
         counts: counts(&sides.concat()),
     }
 }
 
 /// The sides of a layer's Gaussians.
-fn sides<T: Real>(layer: &SeenLayer<'_, T>, settings: &Settings) -> Vec<Side> {
+fn sides<T: Real>(layer: &LayerView<'_, T>, settings: &Settings) -> Vec<Side> {
     match layer.visible {
         true => classify::classify(&layer.gaussians, &layer.view, &layer.clip, settings),
         false => vec![Side::Culled; layer.gaussians.len()],
@@ -75,13 +75,13 @@ fn sides<T: Real>(layer: &SeenLayer<'_, T>, settings: &Settings) -> Vec<Side> {
 
 /// The splats that are drawn, front to back.
 fn in_order<T: Real>(
-    layers: &[SeenLayer<'_, T>],
+    layers: &[LayerView<'_, T>],
     sides: &[Vec<Side>],
     settings: &Settings,
 ) -> Vec<project::Splat<T>> {
     let mut splats = Vec::new();
     for ((layer_number, layer), sides) in (0..).zip(layers).zip(sides) {
-        let SeenLayer {
+        let LayerView {
             gaussians: scene,
             view,
             clip,

@@ -1,10 +1,10 @@
 //! Stage `project`: a Gaussian's footprint, colour and place in depth.
 
-use super::cutoff::Cut;
+use super::cutoff::SplatCut;
 use super::footprint::Footprint;
 use super::harmonics;
 use super::real::Real;
-use super::view::View;
+use super::view::ViewTransform;
 use crate::{Gaussians, Settings};
 
 /// A splat, ready to be drawn.
@@ -19,14 +19,14 @@ pub struct Splat<T> {
     /// Red, green and blue, not negative.
     pub colour: [T; 3],
     /// How it is cut, if it is.
-    pub cut: Option<Cut<T>>,
+    pub cut: Option<SplatCut<T>>,
 }
 
 /// Projects one Gaussian; nothing if it is culled. The splat is whole: stage `cutoff` says how it is cut.
 pub fn project<T: Real>(
     scene: &Gaussians,
     index: usize,
-    view: &View<T>,
+    view: &ViewTransform<T>,
     settings: &Settings,
 ) -> Option<Splat<T>> {
     let footprint = Footprint::new(scene, index, view)?;

@@ -5,7 +5,7 @@ use std::sync::Mutex;
 use super::footprint::Footprint;
 use super::project::Splat;
 use super::real::Real;
-use super::view::View;
+use super::view::ViewTransform;
 use crate::limits::{ALPHA_MAX, ALPHA_MIN_INVERSE};
 use crate::{Decay, Picture, Settings, Show};
 
@@ -13,7 +13,11 @@ use crate::{Decay, Picture, Settings, Show};
 const BAND: u32 = 16;
 
 /// Draws splats that are sorted front to back.
-pub fn splat<T: Real>(splats: &[Splat<T>], view: &View<T>, settings: &Settings) -> Picture {
+pub fn splat<T: Real>(
+    splats: &[Splat<T>],
+    view: &ViewTransform<T>,
+    settings: &Settings,
+) -> Picture {
     let [width, height] = view.size;
     let mut members = vec![Vec::new(); height.div_ceil(BAND) as usize];
     for splat in splats {

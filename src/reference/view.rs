@@ -6,7 +6,7 @@ use crate::{Camera, Placement, Projection};
 
 /// The camera's numbers that the stages need. In f32 they are those that the GPU is given.
 #[derive(Debug, Clone, Copy)]
-pub struct View<T> {
+pub struct ViewTransform<T> {
     /// Picture width and height, pixels.
     pub size: [u32; 2],
     /// How points become pixels.
@@ -32,7 +32,7 @@ pub struct View<T> {
     pub near_cut: T,
 }
 
-impl<T: Real> View<T> {
+impl<T: Real> ViewTransform<T> {
     /// The view that a scene's camera gives a layer that is not placed otherwise.
     pub fn new(camera: &Camera) -> Self {
         Self::in_layer(camera, &Placement::IDENTITY)

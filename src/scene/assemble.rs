@@ -22,11 +22,11 @@ pub(super) const FIXED: [&str; SH + 3] = [
 ];
 
 /// The numbers of one Gaussian as the file has them, by slot; slots that are not in use stay zero.
-pub(super) type Row = [f64];
+pub(super) type GaussianRow = [f64];
 
 /// How a file stores what can be stored in two ways.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Stored {
+pub(super) enum ColumnForm {
     /// Scales as logarithms, opacities as logits.
     Logarithms,
     /// Scales as logarithms, opacities from 0 to 1.
@@ -49,7 +49,7 @@ pub(super) struct Assembler {
     pub(super) rows: u64,
     /// Slots in use.
     used: usize,
-    stored: Stored,
+    stored: ColumnForm,
 }
 
 impl Assembler {
@@ -71,18 +71,18 @@ impl Assembler {
             dropped: Vec::new(),
             rows: 0,
             used: SH + 3 * sh_coefficients(sh_degree),
-            stored: Stored::Logarithms,
+            stored: ColumnForm::Logarithms,
         })
     }
 
     /// The same for rows that store scales and opacities in another way.
-    pub(super) fn stored(mut self, stored: Stored) -> Self {
+    pub(super) fn stored(mut self, stored: ColumnForm) -> Self {
         self.stored = stored;
         self
     }
 
     /// Takes the next row.
-    pub(super) fn push(&mut self, row: &Row) {
+    pub(super) fn push(&mut self, row: &GaussianRow) {
         let element = self.rows;
         self.rows += 1;
         let degree = self.gaussians.sh_degree();
@@ -104,7 +104,7 @@ impl Assembler {
         }
         let stored = [row[3], row[4], row[5]];
         let scale = match self.stored {
-            Stored::Plain => stored.map(|scale| scale.abs() as f32),
+            ColumnForm::Plain => stored.map(|scale| scale.abs() as f32),
             _ => stored.map(|log| log.exp() as f32),
         };
         if let Some(axis) = scale.iter().position(|s| !s.is_finite()) {
@@ -148,7 +148,7 @@ impl Assembler {
             Vec3::from_array(scale),
             rotation.unwrap_or(Quat::IDENTITY),
             match self.stored {
-                Stored::Logarithms => (1.0 / (1.0 + (-row[OPACITY]).exp())) as f32,
+                ColumnForm::Logarithms => (1.0 / (1.0 + (-row[OPACITY]).exp())) as f32,
                 _ => row[OPACITY].clamp(0.0, 1.0) as f32,
             },
             &single[SH..self.used],
@@ -184,8 +184,8 @@ impl Assembler {
     /// infinity, and the logarithm of scale 0 as its negative.
     fn is_limit(&self, slot: usize, value: f32) -> bool {
         match slot {
-            OPACITY => self.stored == Stored::Logarithms && value.is_infinite(),
-            SCALES..ROTATION => self.stored != Stored::Plain && value == f32::NEG_INFINITY,
+            OPACITY => self.stored == ColumnForm::Logarithms && value.is_infinite(),
+            SCALES..ROTATION => self.stored != ColumnForm::Plain && value == f32::NEG_INFINITY,
             _ => false,
         }
     }
@@ -193,8 +193,8 @@ impl Assembler {
     /// True for what is put right: such an infinity, a negative scale, an opacity beyond 0 and 1.
     fn is_repaired(&self, slot: usize, value: f64) -> bool {
         let is_wrong = match slot {
-            OPACITY => self.stored != Stored::Logarithms && !(0.0..=1.0).contains(&value),
-            SCALES..ROTATION => self.stored == Stored::Plain && value < 0.0,
+            OPACITY => self.stored != ColumnForm::Logarithms && !(0.0..=1.0).contains(&value),
+            SCALES..ROTATION => self.stored == ColumnForm::Plain && value < 0.0,
             _ => false,
         };
         is_wrong || self.is_limit(slot, value as f32)
@@ -316,7 +316,7 @@ mod tests {
         (rows[1][SCALES], rows[1][OPACITY]) = (-0.5, 1.0);
         rows[2][OPACITY] = 1.5;
         let assembler = Assembler::with_room(3, 0, Vec::new()).unwrap();
-        let mut assembler = assembler.stored(Stored::Plain);
+        let mut assembler = assembler.stored(ColumnForm::Plain);
         rows.iter().for_each(|row| assembler.push(row));
         let (
             Loaded {

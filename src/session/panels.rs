@@ -19,7 +19,7 @@ pub struct Panel {
 const ALIGNMENT: usize = 16;
 
 /// A panel as the window's images store it.
-struct Stored {
+struct PanelTexture {
     at: (u32, u32),
     size: (u32, u32),
     bytes: Vec<u8>,
@@ -28,7 +28,7 @@ struct Stored {
 /// The panels of the next frames, and their way there.
 #[derive(Default)]
 pub(super) struct Panels {
-    stored: Vec<Stored>,
+    stored: Vec<PanelTexture>,
     /// A buffer a frame in flight, as large as the most bytes so far.
     buffers: [Option<Buffer>; FRAMES],
 }
@@ -43,7 +43,7 @@ impl Panels {
             if pixels.len() as u64 != u64::from(width) * u64::from(height) {
                 return None;
             }
-            Some(Stored {
+            Some(PanelTexture {
                 at: panel.at,
                 size: (width, height),
                 bytes: pixels
@@ -64,7 +64,7 @@ impl Panels {
         size: Option<(u32, u32)>,
     ) -> Result<Option<(&Buffer, Vec<vk::BufferImageCopy>)>> {
         let mut copies = Vec::new();
-        let mut shown: Vec<&Stored> = Vec::new();
+        let mut shown: Vec<&PanelTexture> = Vec::new();
         let mut offset = 0;
         for panel in &self.stored {
             let Some(extent) = size.and_then(|size| within(panel, size)) else {
@@ -123,13 +123,13 @@ fn packed([r, g, b, _]: [f32; 4], format: vk::Format) -> Option<[u8; 4]> {
 }
 
 /// How much of a panel is within a window of this size, from the panel's corner; `None` for nothing.
-fn within(panel: &Stored, (width, height): (u32, u32)) -> Option<(u32, u32)> {
+fn within(panel: &PanelTexture, (width, height): (u32, u32)) -> Option<(u32, u32)> {
     let across = panel.size.0.min(width.saturating_sub(panel.at.0));
     let down = panel.size.1.min(height.saturating_sub(panel.at.1));
     (across > 0 && down > 0).then_some((across, down))
 }
 
-fn overlap(a: &Stored, b: &Stored) -> bool {
+fn overlap(a: &PanelTexture, b: &PanelTexture) -> bool {
     let meet = |from: u32, size: u32, other: u32, others: u32| {
         u64::from(from) < u64::from(other) + u64::from(others)
             && u64::from(other) < u64::from(from) + u64::from(size)
@@ -137,7 +137,7 @@ fn overlap(a: &Stored, b: &Stored) -> bool {
     meet(a.at.0, a.size.0, b.at.0, b.size.0) && meet(a.at.1, a.size.1, b.at.1, b.size.1)
 }
 
-fn copy(offset: usize, panel: &Stored, (width, height): (u32, u32)) -> vk::BufferImageCopy {
+fn copy(offset: usize, panel: &PanelTexture, (width, height): (u32, u32)) -> vk::BufferImageCopy {
     // Within the window, whose size is far below this type's limit.
     let at = |v: u32| i32::try_from(v).expect("it is within the window");
     vk::BufferImageCopy::default()
@@ -164,7 +164,7 @@ fn copy(offset: usize, panel: &Stored, (width, height): (u32, u32)) -> vk::Buffe
 mod tests {
     use super::*;
 
-    fn stored(at: (u32, u32), size: (u32, u32)) -> Stored {
+    fn stored(at: (u32, u32), size: (u32, u32)) -> PanelTexture {
         let panel = Panel {
             at,
             picture: Picture::filled(size.0, size.1, [0.0, 0.5, 1.0, 0.0]),

@@ -316,10 +316,11 @@ pub fn truth(
     camera: &Camera,
     clip: &Clip,
     settings: &Settings,
-) -> Arc<reference::Frame> {
+) -> Arc<reference::ReferenceFrame> {
     /// A frame takes .3 to 1 MB.
     const KEPT: usize = 40;
-    static LAST: Mutex<VecDeque<(String, Arc<reference::Frame>)>> = Mutex::new(VecDeque::new());
+    static LAST: Mutex<VecDeque<(String, Arc<reference::ReferenceFrame>)>> =
+        Mutex::new(VecDeque::new());
     let usual = Settings::default();
     let mut settings = settings.raster(usual.raster);
     settings.precision = usual

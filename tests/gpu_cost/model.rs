@@ -12,7 +12,7 @@ use rara::{
     Gaussians, Mode, Raster, Renderer, RendererDesc, SceneBuffers, Settings, ShFormat, limits,
 };
 use rara_lab::measure::gpu_model::{
-    self, COSTS, CountedFrame, FRAMES_FILE, FrameNumbers, KERNELS_FILE, Kernel, frames, kernels,
+    self, COSTS, FRAMES_FILE, FrameNumbers, KERNELS_FILE, Kernel, ModelFrame, frames, kernels,
 };
 
 use crate::common;
@@ -77,7 +77,7 @@ fn the_models_frames_are_counted() {
 # Frames of generated scenes at 1920x1080, drawn by tiles with the kernels for GPUs, as they were counted by
 #     RARA_RENEW_BUDGET=1 cargo test --release --test gpu_cost -- --ignored the_models_frames_are_counted
 ";
-    let frames: String = found.iter().map(CountedFrame::text).collect();
+    let frames: String = found.iter().map(ModelFrame::text).collect();
     write(FRAMES_FILE, &format!("{head}{frames}"));
 }
 
@@ -86,7 +86,7 @@ fn write(file: &str, text: &str) {
     fs::write(path, text).expect("src/ is writable");
 }
 
-fn counted(gaussians: usize, drawn: &Drawn, is_cut: bool) -> CountedFrame {
+fn counted(gaussians: usize, drawn: &Drawn, is_cut: bool) -> ModelFrame {
     let dispatches = drawn.recorded.dispatches.iter();
     let names = dispatches.filter(|dispatch| groups(drawn, dispatch) > 0);
     let data: FrameData =
@@ -107,7 +107,7 @@ fn counted(gaussians: usize, drawn: &Drawn, is_cut: bool) -> CountedFrame {
     numbers.tied = tied(splats, &data);
     numbers.masked_pairs = masked(drawn, numbers.macro_pairs);
     numbers.loaded = loaded(splats, drawn, &data);
-    CountedFrame {
+    ModelFrame {
         gaussians,
         is_cut,
         numbers,

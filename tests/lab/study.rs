@@ -4,21 +4,21 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use rara::{HeadlessDesc, Mode};
-use rara_lab::study::{self, Metric, Options, Written};
+use rara_lab::study::{self, Metric, StudyOptions, StudyPage};
 use serde_json::json;
 
 use crate::browser::{Browser, ENTER, HOME, LEFT, RIGHT, TAB, UP};
 use crate::folder::Folder;
 
 /// A study of twenty cases whose pictures are tiny.
-fn tiny(folder: &Path) -> Written {
-    let options = Options {
+fn tiny(folder: &Path) -> StudyPage {
+    let options = StudyOptions {
         method: Mode::Rara,
         gaussians: 200,
         size: 24,
         frames: 3,
         frame_size: 16,
-        ..Options::default()
+        ..StudyOptions::default()
     };
     let mut calls = Vec::new();
     let mut progress = |done, of| calls.push((done, of));
@@ -229,7 +229,7 @@ fn a_participant_answers_by_keyboard_on_a_phone_and_the_report_has_every_answer(
     browser.press(ENTER);
     let file = saved(&folder, "rara-study-P7.json");
 
-    let options = study::report::Options {
+    let options = study::report::ReportOptions {
         study: Some(written.study.clone()),
     };
     let report = folder.join("report");
@@ -304,15 +304,15 @@ fn scenes_of_files_keep_their_names_and_the_same_study_has_the_same_number() {
         rara::scene::save_ply(&path, &gaussians).expect("a file");
         path
     });
-    let options = Options {
+    let options = StudyOptions {
         cases: 4,
         size: 16,
         frames: 2,
         frame_size: 8,
-        ..Options::default()
+        ..StudyOptions::default()
     };
     let device = HeadlessDesc::default();
-    let create = |name: &str, options: &Options| {
+    let create = |name: &str, options: &StudyOptions| {
         study::create(
             &folder.join(name),
             &scenes,
@@ -336,7 +336,7 @@ fn scenes_of_files_keep_their_names_and_the_same_study_has_the_same_number() {
             written.study
         );
     }
-    let larger = Options {
+    let larger = StudyOptions {
         size: 17,
         ..options.clone()
     };

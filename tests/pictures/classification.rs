@@ -3,7 +3,7 @@
 use crate::common;
 use glam::{DQuat, DVec3, Quat, Vec3};
 use proptest::prelude::*;
-use rara::reference::{self, Footprint, Side, View, classify, cutoff, splat};
+use rara::reference::{self, Footprint, Side, ViewTransform, classify, cutoff, splat};
 use rara::scene::{Kind, generate};
 use rara::{Camera, Clip, ClipOp, Decay, ExactForm, Gaussians, Mode, Plane, Settings};
 
@@ -69,7 +69,7 @@ proptest! {
         let from = view_from(distance);
         let camera = from
 .eye(from.eye + distance / 4.0 * DVec3::new(away.0, away.1, 0.0));
-        let view = View::<f64>::new(&camera);
+        let view = ViewTransform::<f64>::new(&camera);
         let Some(footprint) = Footprint::new(&scene, 0, &view) else { return Ok(()) };
         let mut reach = (2.0 * (255.0 * f64::from(opacity)).ln()).sqrt();
         if form == ExactForm::Beam {
@@ -248,7 +248,7 @@ fn fewer_are_cut_than_by_the_paper_in_trained_scenes() {
 #[test]
 fn modes_without_a_band_call_nothing_cut() {
     let (scene, camera, plane) = needles(500);
-    let view = View::<f64>::new(&camera);
+    let view = ViewTransform::<f64>::new(&camera);
     let clip = Clip::of([plane], ClipOp::And);
     for mode in [Mode::None, Mode::Hard] {
         let settings = Settings::default().mode(mode);

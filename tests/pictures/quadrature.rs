@@ -9,7 +9,7 @@ use glam::{DQuat, DVec2, DVec3, Quat, Vec3};
 use rara::clip::Expression;
 use rara::reference::cutoff::cutoff;
 use rara::reference::quadrature::PixelRays;
-use rara::reference::{Cut, Footprint, View};
+use rara::reference::{Footprint, SplatCut, ViewTransform};
 use rara::{Camera, Clip, Decay, Gaussians, Headless, Mode, Raster, Settings, reference};
 
 /// Random cases of each class of size, and the classes: standard deviations in pixels.
@@ -92,15 +92,15 @@ impl Case {
 
     /// How many surfaces pass through the splat, as far as it reaches.
     fn cutting(&self) -> usize {
-        let view = View::<f64>::new(&self.camera);
+        let view = ViewTransform::<f64>::new(&self.camera);
         let settings = Settings::default();
         let footprint = Footprint::new(&self.gaussians, 0, &view);
         let cut = footprint
             .and_then(|seen| cutoff(&self.gaussians, 0, &seen, &view, &self.clip, &settings));
         match cut {
-            Some(Cut::Affine { planes, .. }) => planes.len(),
-            Some(Cut::Beam(beam)) => beam.half_spaces.len(),
-            Some(Cut::Combined(combined)) => combined.surfaces.0.len(),
+            Some(SplatCut::Affine { planes, .. }) => planes.len(),
+            Some(SplatCut::Beam(beam)) => beam.half_spaces.len(),
+            Some(SplatCut::Combined(combined)) => combined.surfaces.0.len(),
             _ => 0,
         }
     }

@@ -1,12 +1,12 @@
 //! The stress suite under validation: what `rara stress --validation` prints, held to its targets.
 
 use crate::common;
-use rara_lab::stress::{self, Regime, Row};
+use rara_lab::stress::{self, Regime, RegimeRow};
 
 /// Runs every regime, so that a failure shows the whole table.
 fn check(regimes: Vec<Regime>) {
     let mut headless = common::headless();
-    let run = |regime: &Regime| -> Row {
+    let run = |regime: &Regime| -> RegimeRow {
         // On slow drivers each fourth case: of five, the first, and the last, which is the crowd.
         let every = if common::scale() < 1.0 { 4 } else { 1 };
         let row = stress::run(&mut headless, regime, every);

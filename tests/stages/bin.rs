@@ -3,7 +3,7 @@
 use glam::{DMat4, Quat, Vec3};
 use rara::limits::{TILE_HEIGHT, TILE_WIDTH};
 use rara::reference::bin::{self, Outline, Span};
-use rara::reference::{Real, View, project, sort};
+use rara::reference::{Real, ViewTransform, project, sort};
 use rara::types::{Quad, Splat};
 use rara::{Camera, Clip, ClipOp, ExactForm, Mode, Raster, Settings};
 
@@ -212,7 +212,12 @@ fn tiles_reach_pixel_centres_on_the_contour() {
         let scale = Vec3::new(0.02 + 0.002 * (step % 17) as f32, 0.004, 0.01);
         let opacity = [0.02, 0.2, 0.6, 0.99][step % 4];
         let scene = frame::one(Vec3::new(0.0, 0.0, 2.0), scale, turn, opacity);
-        let base = project::project(&scene, 0, &View::<f64>::new(&camera), &Settings::default());
+        let base = project::project(
+            &scene,
+            0,
+            &ViewTransform::<f64>::new(&camera),
+            &Settings::default(),
+        );
         let f = base.expect("in view").footprint;
         // The contour's ends to the left and to the right, above and below, each on the centre of a pixel that is the
         // first or the last of its tile.

@@ -2,7 +2,7 @@
 
 use glam::{DMat4, Quat, Vec3};
 use rara::limits::BLOCK_SIZE;
-use rara::reference::{self, Side, View, classify};
+use rara::reference::{self, Side, ViewTransform, classify};
 use rara::{Camera, Clip, ClipOp, Mode, Raster, Settings};
 
 use crate::frame::{self, Stages};
@@ -81,7 +81,12 @@ fn classes_of_antialiased_gaussians_are_the_twins() {
 
 fn check(stages: &mut Stages, camera: &Camera, planes: &Clip, settings: &Settings) {
     let ours = sides(stages);
-    let twin = classify::classify(&stages.scene, &View::<f32>::new(camera), planes, settings);
+    let twin = classify::classify(
+        &stages.scene,
+        &ViewTransform::<f32>::new(camera),
+        planes,
+        settings,
+    );
     let mut ties = 0;
     for (index, (ours, twin)) in ours.iter().zip(&twin).enumerate() {
         let is = |side: &Side| match ours {
@@ -136,7 +141,12 @@ fn the_near_cut_is_at_a_fifth() {
         let counts = stages.draw(&camera, &clip, &settings).counts;
         assert_eq!(counts.visible, u32::from(side == Side::Visible), "{z}");
         assert_eq!(counts.culled, u32::from(side == Side::Culled), "{z}");
-        let twin = classify::classify(&scene, &View::<f32>::new(&camera), &clip, &settings);
+        let twin = classify::classify(
+            &scene,
+            &ViewTransform::<f32>::new(&camera),
+            &clip,
+            &settings,
+        );
         assert_eq!(twin, [side], "{z}");
         let drawn = stages.headless.picture().expect("reads back");
         let is_there = drawn.pixels.iter().any(|pixel| pixel[3] > 0.5);

@@ -1,7 +1,9 @@
 //! Stage `cutoff`: the records of the cut splats, by which pixels weigh them.
 
 use glam::Vec3;
-use rara::reference::{Cut, Footprint, HalfSpace, Real, Vec3 as Vector, View, cutoff, vec3};
+use rara::reference::{
+    Footprint, HalfSpace, Real, SplatCut, Vec3 as Vector, ViewTransform, cutoff, vec3,
+};
 use rara::{Camera, Clip, ClipOp, ExactForm, Mode, Raster, Settings};
 
 use crate::frame::{self, Stages};
@@ -82,7 +84,10 @@ fn compare(
     let stride = 4 + clip.surfaces.len();
     let cut = stages.counts().cutoff as usize;
     let cutoffs: Vec<u32> = stages.read("cutoffs");
-    let (single, double) = (View::<f32>::new(camera), View::<f64>::new(camera));
+    let (single, double) = (
+        ViewTransform::<f32>::new(camera),
+        ViewTransform::<f64>::new(camera),
+    );
     for (record, index) in records.chunks(stride).zip(&cutoffs[..cut]) {
         let index = *index as usize;
         let Some(footprint) = Footprint::new(&stages.scene, index, &single) else {
@@ -98,20 +103,20 @@ fn compare(
         let is_union = clip.op == ClipOp::Or && clip.surfaces.len() > 1 && !is_alone;
         assert_eq!(flags & UNION != 0, is_union, "{index}: flags {flags}");
         match (&twin, flags & (BEAM | CURVE)) {
-            (Cut::Affine { planes, .. }, 0) => {
+            (SplatCut::Affine { planes, .. }, 0) => {
                 assert!(planes.len() == 1 && count == 1);
                 worst.kinds[0] += 1;
                 assert_eq!(record[4], [0.0; 4], "no curvature");
                 compare_z(&record[3], planes[0].z, &footprint, worst);
             }
-            (Cut::Affine { planes, .. }, BEAM) => {
+            (SplatCut::Affine { planes, .. }, BEAM) => {
                 if planes.len() == count {
                     worst.kinds[2] += 1;
                     let still = vec3(0.0, 0.0, 0.0);
                     compare_rays(record, footprint.gradients, still, [0.0; 2], worst);
                 }
             }
-            (Cut::Beam(beam), BEAM) => {
+            (SplatCut::Beam(beam), BEAM) => {
                 assert_eq!(beam.front.is_some(), flags & FRONT != 0, "{index}");
                 worst.kinds[2 + usize::from(flags & FRONT != 0)] += 1;
                 compare_rays(record, beam.gradients, beam.lean, aside, worst);
@@ -121,12 +126,12 @@ fn compare(
                     compare_planes(&record[3 + count..], (1, false), front, worst);
                 }
             }
-            (Cut::Chord(chord), BEAM) => {
+            (SplatCut::Chord(chord), BEAM) => {
                 let lean = chord.lean;
                 compare_rays(record, chord.gradients, lean, aside, worst);
                 compare_planes(&record[3..], (count, is_union), &chord.half_spaces, worst);
             }
-            (Cut::Beam(_), _) => {
+            (SplatCut::Beam(_), _) => {
                 worst.kinds[usize::from(flags & CURVE != 0)] += 1;
                 let Some(truth) = Footprint::new(&stages.scene, index, &double) else {
                     continue;
@@ -223,7 +228,7 @@ fn compare_curve(
     record: &[[f32; 4]],
     flags: u32,
     f: &Footprint<f64>,
-    exact: &Cut<f64>,
+    exact: &SplatCut<f64>,
     worst: &mut Apart,
 ) {
     let wide = |row: usize| record[row].map(f64::from);

@@ -2,7 +2,7 @@
 
 use rara::gpu::{Bindings, Device, DeviceDesc};
 use rara::reference::depth;
-use rara::reference::{Footprint, Real, View};
+use rara::reference::{Footprint, Real, ViewTransform};
 use rara::types::{FrameCounts, Gaussian, SplatDepth};
 use rara::{
     Camera, Clip, ClipOp, ExpectedDepthDesc, Layer, LayerState, Mode, Raster, Renderer,
@@ -141,7 +141,7 @@ fn mean_depths_are_the_twins() {
             (2, 1, ClipOp::And),
         ] {
             let camera = frame::views(&scene)[view];
-            let single = View::<f32>::new(&camera);
+            let single = ViewTransform::<f32>::new(&camera);
             let clip = frame::clip(&scene, planes, op);
             for (index, ours) in depths(&device, &mut renderer, &scene, &camera, &clip) {
                 let Some(footprint) = Footprint::new(&scene, index, &single) else {

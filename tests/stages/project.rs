@@ -1,7 +1,7 @@
 //! Stage `project`: place, shape and colour of each survivor.
 
 use glam::{DMat4, Quat, Vec3};
-use rara::reference::{View, harmonics, project, vec3};
+use rara::reference::{ViewTransform, harmonics, project, vec3};
 use rara::{Camera, Clip, Gaussians, Projection, Raster, Settings, ShFormat};
 
 use crate::frame::{self, Stages};
@@ -61,7 +61,7 @@ fn quads() -> Settings {
 }
 
 fn compare(stages: &mut Stages, camera: &Camera, worst: &mut Apart) {
-    let view = View::<f32>::new(camera);
+    let view = ViewTransform::<f32>::new(camera);
     let survivors = stages.survivors();
     let numbers = stages.numbers_in_view(survivors.len());
     let splats = stages.splats();

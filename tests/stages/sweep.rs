@@ -1,7 +1,7 @@
 //! Stages `reclip` and `recut`: what a moved clip changes while the camera stands still.
 
 use bytemuck::Zeroable;
-use rara::reference::{Side, View, classify};
+use rara::reference::{Side, ViewTransform, classify};
 use rara::types::{CUT_AWAY, NOT_CUT, Quad, Splat};
 use rara::{Clip, ClipOp, Mode, Plane, Raster, Settings, Surface};
 
@@ -35,7 +35,7 @@ fn held(stages: &mut Stages, count: usize, raster: Raster) -> Vec<(u32, (Splat, 
 fn a_moved_clip_changes_what_the_twin_says() {
     frame::for_each_scene(|stages, scene| {
         let camera = frame::views(scene)[0];
-        let view = View::<f32>::new(&camera);
+        let view = ViewTransform::<f32>::new(&camera);
         for (mode, planes, op, raster) in [
             (Mode::Exact, 1, ClipOp::And, Raster::Tiles),
             (Mode::Rara, 2, ClipOp::Or, Raster::Quad),

@@ -1,7 +1,7 @@
 //! Ties: single precision may find another class than the twin at a threshold, and nowhere else.
 
 use glam::{DQuat, DVec3, Vec3};
-use rara::reference::{Side, View, classify, clip};
+use rara::reference::{Side, ViewTransform, classify, clip};
 use rara::{Camera, Clip, Gaussians, Placement, Settings};
 
 use crate::common;
@@ -41,7 +41,7 @@ pub fn classes(
                 let sides = match camera {
                     Some(camera) => {
                         let eye = camera.eye - shift;
-                        let view = View::<f64>::new(&camera.eye(eye));
+                        let view = ViewTransform::<f64>::new(&camera.eye(eye));
                         classify::classify(&near, &view, &planes, settings)
                     }
                     None => clip::clip::<f64>(&near, &planes, settings),

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use clap::Args;
 use rara::gpu::DeviceShape;
 use rara::{Camera, Clip, Error, FrameStats, Mode, Raster, Scene, Settings, ShFormat};
-use rara_lab::measure::gpu_model::{self, CountedFrame, GPUS, Gpu, PassPrediction};
+use rara_lab::measure::gpu_model::{self, GPUS, Gpu, ModelFrame, PassPrediction};
 use serde::Serialize;
 
 use super::failure::Failure;
@@ -195,7 +195,7 @@ const RASTERS: [(Raster, &str); 3] = [
     (Raster::Quad, "quad"),
 ];
 
-fn predicted(counted: &CountedFrame) -> Frame {
+fn predicted(counted: &ModelFrame) -> Frame {
     let of = |gpu: &Gpu| gpu_model::predict(gpu, counted);
     Frame {
         name: counted.name(),

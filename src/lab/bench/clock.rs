@@ -3,7 +3,7 @@
 use rara::{Camera, Clip, Headless, Result, Scene, Settings};
 use serde::Serialize;
 
-use crate::frames::{Timed, fresh, in_turn, timed};
+use crate::frames::{FrameTime, fresh, in_turn, timed};
 use crate::statistics::least;
 
 /// The times of one choice, milliseconds.
@@ -59,8 +59,9 @@ pub(crate) fn time(
     Ok(frames.iter().map(|frames| times(frames, on_cpu)).collect())
 }
 
-fn times(frames: &[Timed], on_cpu: bool) -> Times {
-    let of = |value: fn(&Timed) -> Option<f64>| frames.iter().filter_map(value).collect::<Vec<_>>();
+fn times(frames: &[FrameTime], on_cpu: bool) -> Times {
+    let of =
+        |value: fn(&FrameTime) -> Option<f64>| frames.iter().filter_map(value).collect::<Vec<_>>();
     let cpu = of(|frame| Some(frame.processor_ms));
     let stages = frames
         .first()
@@ -106,7 +107,7 @@ mod tests {
             (stats.gpu_ms, stats.wall_ms) = (Some(gpu_ms), 5.0);
             let (name, ms) = ("sort", sort_ms);
             stats.passes.push(PassTime { name, ms });
-            Timed {
+            FrameTime {
                 stats,
                 processor_ms,
             }

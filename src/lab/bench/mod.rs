@@ -14,14 +14,14 @@ use crate::measure::undominated;
 pub(crate) use clock::time;
 use judge::Judge;
 pub(crate) use judge::{band, truth_settings};
-pub use report::Report;
-use report::Row;
+pub use report::BenchReport;
+use report::ChoiceRow;
 pub use variants::names;
 pub(crate) use ways::ways;
 
 /// How much is measured.
 #[derive(Debug, Clone)]
-pub struct Options {
+pub struct BenchOptions {
     /// Frames of each choice, one of each in turn.
     pub frames: u32,
     /// Steps of the slow sweep that popping is measured over, each a 300th of the scene.
@@ -41,9 +41,9 @@ pub fn bench(
     headless: &mut Headless,
     (scene, camera, clip): (&Scene<'_>, &Camera, &Clip),
     look: &Settings,
-    options: &Options,
+    options: &BenchOptions,
     progress: &mut dyn FnMut(u64, u64),
-) -> Result<Report> {
+) -> Result<BenchReport> {
     let mut all = variants::variants(*look);
     all.retain(|v| options.only.is_empty() || options.only.iter().any(|name| name == v.name));
     let total = all.len() as u64 + 2;
@@ -77,8 +77,8 @@ pub fn bench(
     };
 
     let rows = right.iter().zip(measured).zip(times);
-    let mut rows: Vec<Row> = rows
-        .map(|((variant, measures), times)| Row {
+    let mut rows: Vec<ChoiceRow> = rows
+        .map(|((variant, measures), times)| ChoiceRow {
             name: variant.name,
             flags: variant.flags,
             measures,
@@ -87,7 +87,7 @@ pub fn bench(
         })
         .collect();
     // Mode `none` is left out, since it is no way of cutting.
-    let point = |row: &Row| match row.name {
+    let point = |row: &ChoiceRow| match row.name {
         "none" => [f64::NAN; 2],
         _ => [row.times.cost, row.measures.l1],
     };
@@ -96,7 +96,7 @@ pub fn bench(
         rows[index].undominated = true;
     }
     let names: Vec<_> = scene.layers().iter().map(|layer| layer.name()).collect();
-    Ok(Report {
+    Ok(BenchReport {
         scene: names.join(" + "),
         gaussians: scene.gaussians(),
         size: [camera.width, camera.height],

@@ -9,7 +9,7 @@ use crate::charts::{Axis, Scatter, Series};
 
 /// Everything that was measured.
 #[derive(Debug, Serialize)]
-pub struct Report {
+pub struct BenchReport {
     /// The names of the layers.
     pub(crate) scene: String,
     /// How many Gaussians the scene has.
@@ -20,27 +20,27 @@ pub struct Report {
     pub(crate) device: String,
     /// And its driver.
     pub(crate) driver: String,
-    /// As in [`Options::frames`](super::Options::frames).
+    /// As in [`BenchOptions::frames`](super::BenchOptions::frames).
     pub(crate) frames: u32,
-    /// As in [`Options::steps`](super::Options::steps).
+    /// As in [`BenchOptions::steps`](super::BenchOptions::steps).
     pub(crate) steps: u32,
     /// Share of the picture in which the way of cutting makes a difference: where the hard and the exact truth differ,
     /// and 5 px around.
     pub(crate) band_share: f64,
     /// A row for each choice.
-    pub(crate) rows: Vec<Row>,
+    pub(crate) rows: Vec<ChoiceRow>,
     /// The ways of cutting at two sizes.
     #[serde(rename = "paper")] // the name that scripts know
-    pub(crate) ways: Vec<ways::Line>,
+    pub(crate) ways: Vec<ways::WayRow>,
     /// Shapes, if they were asked for.
-    pub(crate) shapes: Vec<shapes::Line>,
+    pub(crate) shapes: Vec<shapes::ShapeRow>,
     /// Choices whose pictures are wrong, and why.
     pub refused: Vec<String>,
 }
 
 /// The measurements of one choice.
 #[derive(Debug, Serialize)]
-pub(crate) struct Row {
+pub(crate) struct ChoiceRow {
     /// Its name.
     pub(crate) name: &'static str,
     /// The flags that choose it.
@@ -55,15 +55,16 @@ pub(crate) struct Row {
     pub(crate) undominated: bool,
 }
 
-impl Report {
+impl BenchReport {
     /// Cost against error, with the front of what nothing beats.
     pub fn chart(&self) -> Scatter {
-        let of = |kind: Kind| {
+        let of = |kind: ChoiceKind| {
             let rows = self.rows.iter();
-            let rows = rows.filter(move |row| row.name != "none" && Kind::of(row.name) == kind);
+            let rows =
+                rows.filter(move |row| row.name != "none" && ChoiceKind::of(row.name) == kind);
             rows.map(|row| (row.times.cost, row.measures.l1, row.name))
         };
-        let kinds = [Kind::Way, Kind::Law, Kind::Precision];
+        let kinds = [ChoiceKind::Way, ChoiceKind::Law, ChoiceKind::Precision];
         let series = kinds.map(|kind| Series::labelled(kind.name(), of(kind)));
         let front = self.rows.iter().filter(|row| row.undominated);
         Scatter {
@@ -78,7 +79,7 @@ impl Report {
 
 /// What a choice chooses.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Kind {
+enum ChoiceKind {
     /// How splats are cut.
     Way,
     /// How a weight changes opacity, and in which form it is computed.
@@ -87,7 +88,7 @@ enum Kind {
     Precision,
 }
 
-impl Kind {
+impl ChoiceKind {
     fn of(name: &str) -> Self {
         match name {
             "hard" | "rara, paper" | "rara, released" | "rara" | "exact" => Self::Way,

@@ -14,7 +14,7 @@ use super::judge::{finite, truth_settings};
 
 /// One region, drawn exactly and by centres.
 #[derive(Debug, Serialize)]
-pub(crate) struct Line {
+pub(crate) struct ShapeRow {
     pub(crate) name: &'static str,
     /// The region as `--clip-expr` takes it.
     pub(crate) region: String,
@@ -38,7 +38,7 @@ pub(crate) fn lines(
     plane: Plane,
     look: &Settings,
     frames: u32,
-) -> Result<Vec<Line>> {
+) -> Result<Vec<ShapeRow>> {
     headless.load_as(scene, look.precision.sh)?;
     let regions = regions(&Bounds::of(scene.clone()), plane)?;
     let [exact, hard] = [Mode::Exact, Mode::Hard].map(|mode| look.mode(mode));
@@ -49,7 +49,7 @@ pub(crate) fn lines(
         let cut = truth(&truth_settings(look)).picture;
         let (drawn, stats) = picture(headless, camera, &clip, &exact)?;
         let by_centres = picture(headless, camera, &clip, &hard)?.0;
-        lines.push(Line {
+        lines.push(ShapeRow {
             name,
             region: region.to_string(),
             cutoff: stats.counts.cutoff,

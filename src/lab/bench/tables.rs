@@ -3,7 +3,7 @@
 use rara::counted::counted;
 
 use super::judge::Measures;
-use super::report::Report;
+use super::report::BenchReport;
 use crate::table::{Cell, Table};
 
 /// The columns of a picture's errors after L1.
@@ -22,7 +22,7 @@ fn errors(m: &Measures) -> [Cell; 6] {
     ]
 }
 
-impl Report {
+impl BenchReport {
     /// As tables, that of the choices first.
     pub fn tables(&self) -> Vec<Table> {
         let mut tables = vec![choices(self), stages(self), ways(self)];
@@ -42,7 +42,7 @@ impl Report {
     }
 }
 
-fn choices(report: &Report) -> Table {
+fn choices(report: &BenchReport) -> Table {
     let [width, height] = report.size;
     let note = format!(
         "{}, {width}x{height}; {}; {} ({}). ms: the sum of each stage's least of {}, one of each choice in \
@@ -82,7 +82,7 @@ fn choices(report: &Report) -> Table {
     table
 }
 
-fn stages(report: &Report) -> Table {
+fn stages(report: &BenchReport) -> Table {
     let mut names = Vec::new();
     for pass in report.rows.iter().flat_map(|row| &row.times.passes) {
         if !names.contains(&pass.name) {
@@ -101,7 +101,7 @@ fn stages(report: &Report) -> Table {
     table
 }
 
-fn ways(report: &Report) -> Table {
+fn ways(report: &BenchReport) -> Table {
     let columns = ["size", "mode", "L1", "exact is nearer by"];
     let columns = columns.into_iter().chain(ERRORS);
     let mut table = Table::new("Ways of cutting against the truth", "", columns);
@@ -119,7 +119,7 @@ fn ways(report: &Report) -> Table {
 }
 
 /// Ratios are of costs.
-fn shapes(report: &Report) -> Table {
+fn shapes(report: &BenchReport) -> Table {
     let note =
         "Costs (ms) and errors of mode exact; the last but one columns are those of mode hard.";
     let columns = [

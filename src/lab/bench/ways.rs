@@ -10,7 +10,7 @@ const SMALL: u32 = 256;
 
 /// One way of cutting at one size.
 #[derive(Debug, Serialize)]
-pub(crate) struct Line {
+pub(crate) struct WayRow {
     pub(crate) size: [u32; 2],
     pub(crate) name: &'static str,
     #[serde(flatten)]
@@ -27,7 +27,7 @@ pub(crate) fn lines(
     look: &Settings,
     steps: u32,
     measured: &[(&str, &Measures)],
-) -> Result<Vec<Line>> {
+) -> Result<Vec<WayRow>> {
     headless.load_as(scene, look.precision.sh)?;
     let small_camera = camera.resized((SMALL, SMALL * camera.height / camera.width.max(1)))?;
     let small = Judge::new(scene, &small_camera, clip, look, steps)?;
@@ -45,10 +45,10 @@ pub(crate) fn lines(
 }
 
 /// Lines of one size.
-fn with_ratios(camera: &Camera, measured: Vec<(&'static str, Measures)>) -> Vec<Line> {
+fn with_ratios(camera: &Camera, measured: Vec<(&'static str, Measures)>) -> Vec<WayRow> {
     let exact = measured.iter().find(|(name, _)| *name == "exact");
     let exact = exact.map_or(f64::NAN, |(_, measures)| measures.l1);
-    let line = |(name, measures): (&'static str, Measures)| Line {
+    let line = |(name, measures): (&'static str, Measures)| WayRow {
         size: [camera.width, camera.height],
         name,
         l1_over_exact: measures.l1 / exact.max(1e-12),

@@ -11,7 +11,7 @@ use super::colours::{INK, PAPER, series};
 /// A part of the paper.
 pub(super) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 /// Whether it was drawn; a string takes everything.
-pub(super) type Drawn = Result<(), Box<dyn Error>>;
+pub(super) type DrawResult = Result<(), Box<dyn Error>>;
 
 /// The width of charts, in pixels as everything here.
 pub(super) const WIDTH: u32 = 820;
@@ -32,7 +32,7 @@ const MARGIN: i32 = 16;
 pub(super) fn chart(
     title: &str,
     size: (u32, u32),
-    draw: impl FnOnce(&Area<'_>) -> Drawn,
+    draw: impl FnOnce(&Area<'_>) -> DrawResult,
 ) -> String {
     let mut svg = String::new();
     let drawn = (|| {
@@ -45,7 +45,7 @@ pub(super) fn chart(
         draw(&root.margin(18 + 22 * lines.len() as i32, MARGIN, MARGIN, MARGIN))?;
         root.present()?;
         drop(root);
-        Drawn::Ok(())
+        DrawResult::Ok(())
     })();
     drawn.expect("a string takes everything that is drawn");
     // What screen readers say of it.
@@ -88,7 +88,7 @@ pub(super) fn write(
     anchor: Anchor,
     size: u32,
     colour: RGBColor,
-) -> Drawn {
+) -> DrawResult {
     let across = match anchor {
         Anchor::Start => HPos::Left,
         Anchor::Middle => HPos::Center,
@@ -103,13 +103,13 @@ fn put(
     at: (i32, i32),
     across: HPos,
     style: TextStyle<'static>,
-) -> Drawn {
+) -> DrawResult {
     let style = style.pos(Pos::new(across, VPos::Center));
     area.draw(&Text::new(clean(text), at, style))?;
     Ok(())
 }
 
-fn write_bold(area: &Area<'_>, text: &str, at: (i32, i32)) -> Drawn {
+fn write_bold(area: &Area<'_>, text: &str, at: (i32, i32)) -> DrawResult {
     let mut style = style(LARGE, INK);
     style.font = style.font.style(FontStyle::Bold);
     put(area, text, at, HPos::Left, style)
@@ -144,7 +144,7 @@ pub(super) fn write_wrapped(
     at: (i32, i32),
     anchor: Anchor,
     width: i32,
-) -> Drawn {
+) -> DrawResult {
     let lines = wrapped(text, width, SMALL);
     let height = SMALL as i32 + 3;
     let first = at.1 - height * (lines.len() as i32 - 1) / 2;
@@ -162,7 +162,7 @@ pub(super) fn write_wrapped(
 }
 
 /// The marker of a series, by its number: shapes differ as well as colours.
-pub(super) fn mark(area: &Area<'_>, number: usize, (x, y): (i32, i32)) -> Drawn {
+pub(super) fn mark(area: &Area<'_>, number: usize, (x, y): (i32, i32)) -> DrawResult {
     let filled = series(number).filled();
     let polygon = |corners: &[(i32, i32)]| {
         let corners = corners.iter().map(|(dx, dy)| (x + dx, y + dy));

@@ -100,7 +100,12 @@ impl HeatMap {
         })
     }
 
-    fn draw_cell(&self, area: &Area<'_>, corners: [(i32, i32); 2], value: f64) -> canvas::Drawn {
+    fn draw_cell(
+        &self,
+        area: &Area<'_>,
+        corners: [(i32, i32); 2],
+        value: f64,
+    ) -> canvas::DrawResult {
         let [(left, top), (right, bottom)] = corners;
         let at = ((left + right) / 2, (top + bottom) / 2);
         if !value.is_finite() {
@@ -119,7 +124,7 @@ impl HeatMap {
     }
 
     /// The colours and the values that they stand for.
-    fn draw_key(&self, area: &Area<'_>, (left, right): (i32, i32), top: i32) -> canvas::Drawn {
+    fn draw_key(&self, area: &Area<'_>, (left, right): (i32, i32), top: i32) -> canvas::DrawResult {
         const STEPS: i32 = 64;
         let [low, high] = self.colours.ends();
         let unit = width_of(&self.unit, SMALL) + 16;

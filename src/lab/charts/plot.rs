@@ -5,7 +5,7 @@ use std::error::Error;
 use plotters::prelude::*;
 
 use super::axis::{BREAK, Span};
-use super::canvas::{self, Anchor, Area, Drawn, MEDIUM, SMALL, style};
+use super::canvas::{self, Anchor, Area, DrawResult, MEDIUM, SMALL, style};
 use super::colours::{FAINT, GRID, INK, PAPER};
 use super::{Axis, Point};
 
@@ -116,7 +116,7 @@ impl<'a> Plot<'a> {
     }
 
     /// Draws the breaks behind which axes with a band for zeros go on.
-    fn breaks(&self) -> Drawn {
+    fn breaks(&self) -> DrawResult {
         let (width, height) = self.area.dim_in_pixel();
         let (width, height) = (width as i32, height as i32);
         if self.y.zeros {
@@ -141,14 +141,14 @@ impl<'a> Plot<'a> {
         (x + self.offset.0, y + self.offset.1)
     }
 
-    fn band(&self, corners: [(i32, i32); 2]) -> Drawn {
+    fn band(&self, corners: [(i32, i32); 2]) -> DrawResult {
         let corners = corners.map(|corner| self.outside(corner));
         self.outer.draw(&Rectangle::new(corners, PAPER.filled()))?;
         Ok(())
     }
 
     /// A line between two places, which may be outside.
-    pub(super) fn line(&self, from: (i32, i32), to: (i32, i32), colour: RGBColor) -> Drawn {
+    pub(super) fn line(&self, from: (i32, i32), to: (i32, i32), colour: RGBColor) -> DrawResult {
         let path = vec![self.outside(from), self.outside(to)];
         self.outer.draw(&PathElement::new(path, colour))?;
         Ok(())

@@ -48,7 +48,7 @@ impl Violins {
         })
     }
 
-    fn draw_violin(&self, plot: &Plot<'_>, number: usize, values: &[f64]) -> canvas::Drawn {
+    fn draw_violin(&self, plot: &Plot<'_>, number: usize, values: &[f64]) -> canvas::DrawResult {
         let Some(median) = median(values) else {
             return Ok(());
         };
@@ -116,7 +116,11 @@ impl Violins {
 }
 
 /// A dot for each value, moved aside so that equal ones are seen; the same every time.
-fn dots(area: &Area<'_>, values: &[f64], at: impl Fn(f64, f64) -> (i32, i32)) -> canvas::Drawn {
+fn dots(
+    area: &Area<'_>,
+    values: &[f64],
+    at: impl Fn(f64, f64) -> (i32, i32),
+) -> canvas::DrawResult {
     for (number, &value) in values.iter().enumerate() {
         // Multiples of the golden ratio fill an interval evenly, in any number.
         let away = 2.0 * (number as f64 * 0.618_033_988_75).fract() - 1.0;

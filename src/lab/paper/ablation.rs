@@ -12,7 +12,7 @@ use crate::table::{Cell, Table};
 
 /// One way of cutting, compared with the picture of mode `none`.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct Row {
+pub struct AblationRow {
     /// The mode, and what it traces.
     pub what: String,
     /// Splats that are weighed.
@@ -40,7 +40,7 @@ pub fn ablation(
     scene: &Scene<'_>,
     camera: &Camera,
     look: &Settings,
-) -> Result<Vec<Row>> {
+) -> Result<Vec<AblationRow>> {
     let bounds = Bounds::of(scene);
     let reach = bounds
         .min
@@ -53,7 +53,7 @@ pub fn ablation(
     let row = |(what, settings): (&str, Settings)| {
         let (drawn, stats) = picture(headless, camera, &far, &settings)?;
         let c = measure::compare(&drawn, &truth)?;
-        Ok(Row {
+        Ok(AblationRow {
             what: what.into(),
             cutoff: stats.counts.cutoff,
             l1: c.l1,
@@ -68,7 +68,7 @@ pub fn ablation(
 }
 
 /// The rows as a table.
-pub fn table(title: &str, rows: &[Row]) -> Table {
+pub fn table(title: &str, rows: &[AblationRow]) -> Table {
     let note = "Every picture has a plane at infinity and is compared with that of mode none. L1 is on a scale of 0 to 255.";
     let mut table = Table::new(
         title,

@@ -27,7 +27,7 @@ const MODES: [(&str, Mode); 4] = [
 
 /// The times of one mode.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct Row {
+pub struct EfficiencyRow {
     /// The paper's name of the mode.
     pub mode: String,
     /// True if frames reuse what a moving plane does not change.
@@ -53,12 +53,12 @@ pub struct Efficiency {
     /// Frames of a sweep.
     pub frames: u32,
     /// Modes computed anew, then those that reuse.
-    pub rows: Vec<Row>,
+    pub rows: Vec<EfficiencyRow>,
 }
 
 /// The times of the frames of one sweep, and of their stages.
 #[derive(Default, Clone)]
-struct Sweep {
+struct SweepTimes {
     wall: Vec<f64>,
     passes: Vec<(String, f64)>,
     seconds: f64,
@@ -88,7 +88,7 @@ pub fn efficiency(
         let sweeps = in_turn(repeats..=repeats, modes.len(), |index, _| {
             sweep(headless, case, &clips, modes[index].1, reuse)
         })?;
-        let of = |((name, _), sweeps): (&(&str, Mode), Vec<Sweep>)| row(name, reuse, &sweeps);
+        let of = |((name, _), sweeps): (&(&str, Mode), Vec<SweepTimes>)| row(name, reuse, &sweeps);
         rows.extend(modes.iter().zip(sweeps).map(of));
     }
     Ok(Efficiency {
@@ -106,9 +106,9 @@ fn sweep(
     clips: &[Clip],
     mode: Mode,
     reuse: bool,
-) -> Result<Sweep> {
+) -> Result<SweepTimes> {
     let settings = Settings::default().mode(mode);
-    let mut sweep = Sweep::default();
+    let mut sweep = SweepTimes::default();
     headless.forget();
     let begin = Instant::now();
     for clip in clips {
@@ -128,7 +128,7 @@ fn sweep(
     Ok(sweep)
 }
 
-fn row(mode: &str, reuse: bool, sweeps: &[Sweep]) -> Row {
+fn row(mode: &str, reuse: bool, sweeps: &[SweepTimes]) -> EfficiencyRow {
     let frames = sweeps.first().map_or(0, |sweep| sweep.wall.len());
     let of_frame = |frame: usize| sweeps.iter().map(|s| s.wall[frame]).collect::<Vec<_>>();
     let least: Vec<f64> = (0..frames).map(|frame| least(&of_frame(frame))).collect();
@@ -142,7 +142,7 @@ fn row(mode: &str, reuse: bool, sweeps: &[Sweep]) -> Row {
             .map(|(_, ms)| ms / frames as f64)
             .collect()
     };
-    Row {
+    EfficiencyRow {
         mode: mode.into(),
         reuse,
         fps: nothing(median(&rates)),

@@ -15,18 +15,18 @@ use std::path::Path;
 use glam::DVec3;
 use rara::{Error, Headless, Picture, Result, Scene, Settings};
 
-use crate::bench::{self, Options as BenchOptions, ways};
-use crate::cases::{Case, Cut, Source, cases, different, plain};
+use crate::bench::{self, BenchOptions, ways};
+use crate::cases::{Case, CaseCut, Source, cases, different, plain};
 use crate::maps;
 use perception::Pictures;
-pub use results::Options;
+pub use results::PaperOptions;
 use results::{Choices, Maps, Results};
 use series::Property;
-pub use store::Progress;
+pub use store::PaperProgress;
 use store::Store;
 
 /// A part of the experiments, which is measured in one go and kept.
-enum Part<'a> {
+enum Section<'a> {
     Efficiency(&'a Source, &'a Case),
     Ablation(&'a Source, &'a Case),
     Choices(&'a Source, &'a Case),
@@ -34,7 +34,7 @@ enum Part<'a> {
     Series(Property),
 }
 
-impl Part<'_> {
+impl Section<'_> {
     fn name(&self) -> String {
         match self {
             Self::Efficiency(source, _) => format!("efficiency: {}", source.name),
@@ -46,7 +46,7 @@ impl Part<'_> {
     }
 
     /// An estimate of the work, in frames of a Gaussian; the truth takes about as long as four frames.
-    fn work(&self, options: &Options) -> f64 {
+    fn work(&self, options: &PaperOptions) -> f64 {
         let repeats = f64::from(options.repeats);
         let (gaussians, frames) = match self {
             Self::Efficiency(source, _) => {
@@ -80,9 +80,9 @@ fn case_name(source: &Source, case: &Case) -> String {
 pub fn run(
     headless: &mut Headless,
     mut sources: Vec<Source>,
-    options: &Options,
+    options: &PaperOptions,
     folder: &Path,
-    progress: &mut dyn FnMut(&Progress),
+    progress: &mut dyn FnMut(&PaperProgress),
 ) -> Result<()> {
     let names = different(sources.iter().map(|source| source.name.clone()));
     (sources.iter_mut().zip(names)).for_each(|(source, name)| source.name = name);
@@ -92,18 +92,18 @@ pub fn run(
     let mut parts = Vec::new();
     for case in timed
         .iter()
-        .filter(|case| case.cut == Cut::Face && options.timed.contains(&case.scene))
+        .filter(|case| case.cut == CaseCut::Face && options.timed.contains(&case.scene))
     {
         let source = &sources[case.scene];
-        parts.push(Part::Efficiency(source, case));
-        parts.push(Part::Ablation(source, case));
-        parts.push(Part::Choices(source, case));
+        parts.push(Section::Efficiency(source, case));
+        parts.push(Section::Ablation(source, case));
+        parts.push(Section::Choices(source, case));
     }
     parts.extend(
         all.iter()
-            .map(|case| Part::Case(&sources[case.scene], case)),
+            .map(|case| Section::Case(&sources[case.scene], case)),
     );
-    parts.extend(Property::ALL.map(Part::Series));
+    parts.extend(Property::ALL.map(Section::Series));
 
     let plan = parts.iter().map(|part| (part.name(), part.work(options)));
     let mut store = Store::new(
@@ -132,22 +132,22 @@ pub fn run(
     let (frames, repeats) = (options.frames, options.repeats);
     for part in &parts {
         match *part {
-            Part::Efficiency(source, case) => results.efficiency.push(store.part(|| {
+            Section::Efficiency(source, case) => results.efficiency.push(store.part(|| {
                 let scene = loaded(headless, source)?;
                 efficiency::efficiency(headless, (&source.name, &scene), case, frames, repeats)
             })?),
-            Part::Ablation(source, case) => {
+            Section::Ablation(source, case) => {
                 let rows = store.part(|| {
                     let scene = loaded(headless, source)?;
                     ablation::ablation(headless, &scene, &case.camera, &Settings::default())
                 })?;
                 results.ablation.push((source.name.clone(), rows));
             }
-            Part::Choices(source, case) => {
+            Section::Choices(source, case) => {
                 let choices = store.part(|| choices(headless, (&source.scene(), case), options))?;
                 results.choices.push((source.name.clone(), choices));
             }
-            Part::Case(source, case) => {
+            Section::Case(source, case) => {
                 let (outcome, maps) = store.part(|| {
                     let scene = loaded(headless, source)?;
                     let name = case_name(source, case);
@@ -158,7 +158,7 @@ pub fn run(
                 results.outcomes.push(outcome);
                 results.maps.push(maps);
             }
-            Part::Series(property) => results.series.push(store.part(|| {
+            Section::Series(property) => results.series.push(store.part(|| {
                 series::series(headless, property, (options.count, options.size, repeats))
             })?),
         }
@@ -177,7 +177,7 @@ fn loaded<'a>(headless: &mut Headless, source: &'a Source) -> Result<Scene<'a>> 
 fn choices(
     headless: &mut Headless,
     (scene, case): (&Scene<'_>, &Case),
-    options: &Options,
+    options: &PaperOptions,
 ) -> Result<Choices> {
     let only = [
         "none",
@@ -253,7 +253,7 @@ fn write_maps(folder: &Path, case: &str, pictures: &Pictures) -> Result<Maps> {
 }
 
 /// What every result depends on: the program, the device, the scenes and the options.
-fn origin(headless: &Headless, sources: &[Source], options: &Options) -> String {
+fn origin(headless: &Headless, sources: &[Source], options: &PaperOptions) -> String {
     let mut hasher = DefaultHasher::new();
     for source in sources {
         source.name.hash(&mut hasher);

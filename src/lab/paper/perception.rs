@@ -12,7 +12,7 @@ use crate::measure::{self, Popping, Qualities, Truth};
 const DEEPER: f64 = 0.1;
 /// One way of cutting in one case.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub(super) struct Measured {
+pub(super) struct PerceptionMeasures {
     /// Its name in the list of ways.
     pub way: String,
     /// The six qualities.
@@ -29,7 +29,7 @@ pub(super) struct Outcome {
     /// The scene's name and the cut's.
     pub case: String,
     /// One of each way.
-    pub ways: Vec<Measured>,
+    pub ways: Vec<PerceptionMeasures>,
 }
 
 /// The pictures of a case.
@@ -68,7 +68,7 @@ pub(super) fn measure(
         let popping = popping(headless, case, &clips, &truths, &settings)?;
         let (drawn, _) = picture(headless, &case.camera, &middle, &settings)?;
         let apart = measure::differences(&drawn, &truth.cut)?;
-        measured.push(Measured {
+        measured.push(PerceptionMeasures {
             way: way.into(),
             qualities: truth.measure(&drawn, &popping)?,
             l1: apart.l1,

@@ -144,7 +144,7 @@ fn efficiency_section(results: &Results) -> Section {
 const WITHOUT: [(&str, f64, f64); 2] = [("360bonsai", 8.5359, 0.5759), ("Hair", 0.3210, 0.9968)];
 
 fn ablation_section(results: &Results) -> Section {
-    let table = |(scene, rows): &(String, Vec<ablation::Row>)| ablation::table(scene, rows);
+    let table = |(scene, rows): &(String, Vec<ablation::AblationRow>)| ablation::table(scene, rows);
     let tables: Vec<Table> = results.ablation.iter().map(table).collect();
     let paper = WITHOUT.map(|(scene, l1, ssim)| format!("L1 {l1} and SSIM {ssim} for {scene}"));
     let text = vec![
@@ -170,7 +170,7 @@ fn nearest(results: &Results) -> String {
     for (scene, rows) in &results.ablation {
         let traced = rows.iter().filter(|row| row.what.starts_with("rara, all"));
         for (paper, l1, _) in WITHOUT {
-            let apart = |row: &&ablation::Row| ((row.l1.max(1e-9)) / l1).ln().abs();
+            let apart = |row: &&ablation::AblationRow| ((row.l1.max(1e-9)) / l1).ln().abs();
             let best = traced.clone().min_by(|a, b| apart(a).total_cmp(&apart(b)));
             found.extend(
                 best.map(|row| format!("{scene} beside {paper}: {} (L1 {:.3})", row.what, row.l1)),

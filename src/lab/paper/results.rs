@@ -10,7 +10,7 @@ use crate::table::Table;
 
 /// How much is measured.
 #[derive(Debug, Clone, Hash, Serialize)]
-pub struct Options {
+pub struct PaperOptions {
     /// Width and height of the pictures that are timed, pixels.
     pub size: u32,
     /// Width and height of the pictures of the cases, pixels.
@@ -29,7 +29,7 @@ pub struct Options {
     pub all_choices: bool,
 }
 
-impl Options {
+impl PaperOptions {
     /// A few minutes on two cores, on generated scenes of 6 000 Gaussians.
     pub fn quick() -> Self {
         Self {
@@ -80,11 +80,11 @@ pub(super) struct Results {
     pub(super) version: &'static str,
     pub(super) device: String,
     pub(super) driver: String,
-    pub(super) options: Options,
+    pub(super) options: PaperOptions,
     pub(super) scenes: Vec<(String, usize)>,
     pub(super) seconds: f64,
     pub(super) efficiency: Vec<Efficiency>,
-    pub(super) ablation: Vec<(String, Vec<ablation::Row>)>,
+    pub(super) ablation: Vec<(String, Vec<ablation::AblationRow>)>,
     pub(super) outcomes: Vec<Outcome>,
     pub(super) maps: Vec<Maps>,
     pub(super) choices: Vec<(String, Choices)>,

@@ -8,7 +8,7 @@ use rara::{
 use serde::{Deserialize, Serialize};
 
 use crate::bench::{time, truth_settings};
-use crate::cases::{Cut, Source, cases};
+use crate::cases::{CaseCut, Source, cases};
 use crate::charts::{Axis, Lines, Series as Line};
 use crate::frames::{MODES, picture};
 use crate::measure;
@@ -127,7 +127,7 @@ pub(super) fn series(
         let cases = cases(&source, glam::DVec3::NEG_Y, (size, size))?;
         let case = cases
             .into_iter()
-            .find(|case| case.cut == Cut::Face)
+            .find(|case| case.cut == CaseCut::Face)
             .expect("a case of each cut");
         let clip = match property {
             Property::Place => case.at(value)?,

@@ -12,7 +12,7 @@ use crate::cases::plain;
 
 /// How far a run is.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Progress {
+pub struct PaperProgress {
     /// What is measured now.
     pub what: String,
     /// Parts that are done.
@@ -35,11 +35,11 @@ pub(super) struct Store<'a> {
     pub(super) seconds: f64,
     /// Work that was measured in this run, and the seconds it took.
     measured: (f64, f64),
-    progress: &'a mut dyn FnMut(&Progress),
+    progress: &'a mut dyn FnMut(&PaperProgress),
 }
 
 #[derive(Serialize, Deserialize)]
-struct Stored<T> {
+struct CacheRecord<T> {
     origin: String,
     seconds: f64,
     result: T,
@@ -51,7 +51,7 @@ impl<'a> Store<'a> {
         folder: &Path,
         origin: String,
         plan: Vec<(String, f64)>,
-        progress: &'a mut dyn FnMut(&Progress),
+        progress: &'a mut dyn FnMut(&PaperProgress),
     ) -> Result<Self> {
         let folder = folder.join("parts");
         std::fs::create_dir_all(&folder).map_err(Error::io(&folder))?;
@@ -73,7 +73,7 @@ impl<'a> Store<'a> {
         measure: impl FnOnce() -> Result<T>,
     ) -> Result<T> {
         let left = self.plan.len();
-        let progress = Progress {
+        let progress = PaperProgress {
             what: self
                 .plan
                 .first()
@@ -95,7 +95,7 @@ impl<'a> Store<'a> {
         self.measured.0 += work;
         self.measured.1 += seconds;
         self.seconds += seconds;
-        let stored = Stored {
+        let stored = CacheRecord {
             origin: self.origin.clone(),
             seconds,
             result,
@@ -114,9 +114,9 @@ impl<'a> Store<'a> {
     }
 
     /// What was kept, if it is whole and of the same origin.
-    fn read<T: DeserializeOwned>(&self, file: &Path) -> Option<Stored<T>> {
+    fn read<T: DeserializeOwned>(&self, file: &Path) -> Option<CacheRecord<T>> {
         let text = std::fs::read_to_string(file).ok()?;
-        let stored: Stored<T> = serde_json::from_str(&text).ok()?;
+        let stored: CacheRecord<T> = serde_json::from_str(&text).ok()?;
         (stored.origin == self.origin).then_some(stored)
     }
 }
@@ -130,8 +130,8 @@ mod tests {
         let folder = std::env::temp_dir().join(format!("rara-lab-store-{}", std::process::id()));
         let plan = || vec![("a b".to_owned(), 1.0), ("c".to_owned(), 3.0)];
         let mut told = Vec::new();
-        let run = |origin: &str, value: u32, told: &mut Vec<Progress>| {
-            let mut hear = |progress: &Progress| told.push(progress.clone());
+        let run = |origin: &str, value: u32, told: &mut Vec<PaperProgress>| {
+            let mut hear = |progress: &PaperProgress| told.push(progress.clone());
             let mut store = Store::new(&folder, origin.into(), plan(), &mut hear).unwrap();
             let first = store.part(|| Ok(value)).unwrap();
             // The run ends here, before the second part.

@@ -8,16 +8,16 @@ use rara::types::Splat;
 use rara::{Clip, Headless, Result};
 
 use super::fragments;
-use super::numbers::{Numbers, times};
+use super::numbers::{Measurements, times};
 use super::rates::Rates;
 use super::run::{Run, in_mode};
 use super::world::World;
-use crate::frames::{MODES, Timed, in_turn, timed};
+use crate::frames::{FrameTime, MODES, in_turn, timed};
 
 /// Bytes that are copied in a measurement, and in a run that only shows that everything runs.
 const MOVED: [u64; 2] = [128 << 20, 1 << 20];
 
-pub(super) fn measure(run: &mut Run<'_>, world: &World, numbers: Numbers) -> Result<()> {
+pub(super) fn measure(run: &mut Run<'_>, world: &World, numbers: Measurements) -> Result<()> {
     let (name, mode) = MODES[0];
     if !run.allows(name, "auto") {
         return Ok(());
@@ -33,13 +33,13 @@ pub(super) fn measure(run: &mut Run<'_>, world: &World, numbers: Numbers) -> Res
     let device = Rates::new(whole.device(), MOVED[usize::from(run.options.quick)])?;
 
     let frame = |headless: &mut Headless| timed(headless, &camera, &Clip::default(), &settings);
-    let rounds: Vec<([f64; 2], Timed, Timed)> = in_turn(run.rounds(), 1, |_, _| {
+    let rounds: Vec<([f64; 2], FrameTime, FrameTime)> = in_turn(run.rounds(), 1, |_, _| {
         let rates = [device.moved()?, device.blended()?];
         Ok((rates, frame(&mut sorts)?, frame(&mut whole)?))
     })?
     .remove(0);
 
-    let frames: Vec<Timed> = rounds.iter().map(|round| round.2.clone()).collect();
+    let frames: Vec<FrameTime> = rounds.iter().map(|round| round.2.clone()).collect();
     let survivors = f64::from(frames.last().map_or(0, |timed| timed.stats.counts.drawn));
     let record = whole.scene_bytes() as f64 / world.scene.len() as f64;
     let pixels = f64::from(camera.width) * f64::from(camera.height);
@@ -47,8 +47,8 @@ pub(super) fn measure(run: &mut Run<'_>, world: &World, numbers: Numbers) -> Res
     let splats = survivors * (record + 2.0 * size_of::<Splat>() as f64);
     let blended = fragments::count(&world.scene, &camera, &settings) as f64;
     // The faster of the two sorts counts: a bound that the frame itself beats would be none.
-    let sorted = |(_, keys, whole): &([f64; 2], Timed, Timed)| {
-        let rate = |timed: &Timed| {
+    let sorted = |(_, keys, whole): &([f64; 2], FrameTime, FrameTime)| {
+        let rate = |timed: &FrameTime| {
             let ms = times(std::slice::from_ref(timed), "sort");
             ms.first()
                 .map(|ms| 1e3 * f64::from(timed.stats.counts.drawn) / ms)

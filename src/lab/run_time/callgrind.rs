@@ -5,17 +5,17 @@ use std::path::Path;
 
 /// Instructions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub(super) struct Counted {
+pub(super) struct InstructionCounts {
     pub(super) all: u64,
     /// Instructions in the program's own code; the others are in libraries and drivers.
     pub(super) own: u64,
 }
 
 /// Sums up a `callgrind.out` with `Ir` as its only event (see Callgrind Format Specification in valgrind's manual).
-pub(super) fn read(text: &str, program: &Path) -> Counted {
+pub(super) fn read(text: &str, program: &Path) -> InstructionCounts {
     // Objects have a number, and their name only where they first appear.
     let mut objects: HashMap<&str, bool> = HashMap::new();
-    let mut counted = Counted::default();
+    let mut counted = InstructionCounts::default();
     let (mut own, mut inclusive) = (false, false);
     for line in text.lines() {
         if let Some((id, name)) = object(line) {
@@ -86,11 +86,14 @@ totals: 1165
         let counted = read(text, Path::new("/bin/ours"));
         assert_eq!(
             counted,
-            Counted {
+            InstructionCounts {
                 all: 1165,
                 own: 165
             }
         );
-        assert_eq!(read("", Path::new("/bin/ours")), Counted::default());
+        assert_eq!(
+            read("", Path::new("/bin/ours")),
+            InstructionCounts::default()
+        );
     }
 }

@@ -10,7 +10,7 @@ use rara::{
     TargetFormat,
 };
 
-use super::run::{Options, in_mode};
+use super::run::{RunTimeOptions, in_mode};
 use super::world::World;
 use crate::frames::MODES;
 
@@ -30,7 +30,11 @@ pub(super) const FIRST: &str = "first picture";
 ///
 /// # Errors
 /// If the file cannot be read, or nothing be drawn.
-pub fn child(work: &str, options: &Options, say: &mut dyn FnMut(&str) -> Result<()>) -> Result<()> {
+pub fn child(
+    work: &str,
+    options: &RunTimeOptions,
+    say: &mut dyn FnMut(&str) -> Result<()>,
+) -> Result<()> {
     let (device, width) = (&options.device, options.size());
     let load = || World::load(&options.scenes[0], options.cameras.as_deref());
     match work {

@@ -2,7 +2,7 @@
 
 use rara::{Headless, Raster, Result, reference};
 
-use super::numbers::Numbers;
+use super::numbers::Measurements;
 use super::run::{Run, in_mode, rasters};
 use super::world::World;
 use crate::frames::MODES;
@@ -12,7 +12,7 @@ use crate::measure::psnr;
 const WIDTH: u32 = 123;
 
 /// Compares every mode and raster path with the picture in double precision.
-pub(super) fn measure(run: &mut Run<'_>, world: &World, numbers: Numbers) -> Result<()> {
+pub(super) fn measure(run: &mut Run<'_>, world: &World, numbers: Measurements) -> Result<()> {
     let (camera, clip) = (world.camera(1, WIDTH)?, world.keeping(0.5)?);
     let mut numbers = numbers.of([camera.width, camera.height], "");
     let mut headless = Headless::new(&run.options.device)?;

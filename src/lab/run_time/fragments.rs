@@ -3,7 +3,7 @@
 
 use std::sync::Mutex;
 
-use rara::reference::{Splat, View, classify, compact, project, sort, splat};
+use rara::reference::{Splat, ViewTransform, classify, compact, project, sort, splat};
 use rara::{Camera, Clip, Decay, Gaussians, Settings};
 
 /// Rows that a thread counts in at a time.
@@ -11,7 +11,7 @@ const BAND: u32 = 16;
 
 /// Counts the fragments of a frame without a clip.
 pub(super) fn count(scene: &Gaussians, camera: &Camera, settings: &Settings) -> u64 {
-    let view = View::<f32>::new(camera);
+    let view = ViewTransform::<f32>::new(camera);
     let sides = classify::classify(scene, &view, &Clip::default(), settings);
     let drawn = compact::compact(&sides);
     let project = |&index: &u32| project::project(scene, index as usize, &view, settings);

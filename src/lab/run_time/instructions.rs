@@ -6,14 +6,14 @@ use std::process::Command;
 use rara::scene::{Kind, generate, save_ply};
 use rara::{Error, Result};
 
-use super::callgrind::{Counted, read};
+use super::callgrind::{InstructionCounts, read};
 use super::child::FRAMES;
-use super::numbers::Numbers;
+use super::numbers::Measurements;
 use super::run::Run;
 use super::world::World;
 
 /// Counts those of one thread; drivers' threads are left out.
-pub(super) fn measure(run: &mut Run<'_>, world: &World, mut numbers: Numbers) -> Result<()> {
+pub(super) fn measure(run: &mut Run<'_>, world: &World, mut numbers: Measurements) -> Result<()> {
     let valgrind = Command::new("valgrind").arg("--version").output();
     if !valgrind.is_ok_and(|output| output.status.success()) {
         let why = "there is no valgrind here (Debian's package valgrind)";
@@ -47,7 +47,7 @@ pub(super) fn measure(run: &mut Run<'_>, world: &World, mut numbers: Numbers) ->
     run.finish(&numbers)
 }
 
-fn count(run: &mut Run<'_>, work: &str, file: &Path) -> Result<Counted> {
+fn count(run: &mut Run<'_>, work: &str, file: &Path) -> Result<InstructionCounts> {
     run.program.hear(&format!("instructions: {work}"));
     let out = run.folder.join("callgrind.out");
     let child = run.program.child(work, file, run.options.size())?;

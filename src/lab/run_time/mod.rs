@@ -25,12 +25,12 @@ use rara::{Error, Headless, Result};
 
 use crate::table::Table;
 pub use child::{CHILDREN, child};
-use numbers::Numbers;
+use numbers::Measurements;
 use run::Run;
-pub use run::{Options, Program};
+pub use run::{Program, RunTimeOptions};
 use world::World;
 
-type Section = fn(&mut Run<'_>, &World, Numbers) -> Result<()>;
+type Section = fn(&mut Run<'_>, &World, Measurements) -> Result<()>;
 
 /// The sections in the order in which they run: their names, and the sizes and the measurement of generated scenes.
 const SECTIONS: [(&str, &[u32], Section); 6] = [
@@ -57,7 +57,7 @@ pub fn sections() -> [&'static str; SECTIONS.len()] {
 ///
 /// # Errors
 /// If something cannot be measured, other than for lack of memory.
-pub fn run_time(options: &Options, program: &mut dyn Program) -> Result<Vec<String>> {
+pub fn run_time(options: &RunTimeOptions, program: &mut dyn Program) -> Result<Vec<String>> {
     let headless = Headless::new(&options.device)?;
     let device = [headless.device_name(), headless.driver()].map(String::from);
     headless.close()?;
@@ -128,7 +128,7 @@ fn scene(
 ) -> Result<()> {
     let measured = run.program.check_room(gaussians).and_then(|()| {
         let world = world()?;
-        let numbers = Numbers::new(section, &world, [run.options.size(); 2]);
+        let numbers = Measurements::new(section, &world, [run.options.size(); 2]);
         let what = counted(world.scene.len(), "Gaussian");
         let scene = &world.name;
         run.program.hear(&format!("{section}: {scene}, {what}"));

@@ -1,12 +1,12 @@
 //! What was measured of one scene, as a table for people and as rows for programs.
 
-use crate::frames::Timed;
+use crate::frames::FrameTime;
 use crate::statistics::{least, median};
 use crate::table::{Cell, Table, small};
 
 use super::world::World;
 
-/// What [`Numbers::rows`] are of.
+/// What [`Measurements::rows`] are of.
 pub(super) const COLUMNS: [&str; 12] = [
     "device",
     "driver",
@@ -24,7 +24,7 @@ pub(super) const COLUMNS: [&str; 12] = [
 
 /// All numbers of a scene and of pictures of one size.
 #[derive(Debug)]
-pub(super) struct Numbers {
+pub(super) struct Measurements {
     section: &'static str,
     scene: String,
     gaussians: usize,
@@ -48,8 +48,8 @@ struct Number {
 const TOTALS: [&str; 3] = ["frame", "processor", "device"];
 
 /// One of [`TOTALS`] or a stage, frame by frame; nothing where no frame went through the stage.
-pub(super) fn times(frames: &[Timed], name: &str) -> Vec<f64> {
-    let time = |timed: &Timed| match name {
+pub(super) fn times(frames: &[FrameTime], name: &str) -> Vec<f64> {
+    let time = |timed: &FrameTime| match name {
         "frame" => Some(timed.stats.wall_ms),
         "processor" => Some(timed.processor_ms),
         "device" => timed.stats.gpu_ms,
@@ -61,7 +61,7 @@ pub(super) fn times(frames: &[Timed], name: &str) -> Vec<f64> {
     frames.iter().filter_map(time).collect()
 }
 
-impl Numbers {
+impl Measurements {
     pub(super) fn new(section: &'static str, world: &World, size: [u32; 2]) -> Self {
         Self {
             section,
@@ -97,7 +97,7 @@ impl Numbers {
     }
 
     /// Adds the stages of frames and their totals.
-    pub(super) fn add_frames(&mut self, column: &str, frames: &[Timed]) {
+    pub(super) fn add_frames(&mut self, column: &str, frames: &[FrameTime]) {
         let stages = frames
             .last()
             .into_iter()
@@ -108,7 +108,12 @@ impl Numbers {
     }
 
     /// Adds the ratios of frames' totals to those of other frames of the same rounds, which other work disturbs alike.
-    pub(super) fn add_ratios(&mut self, column: &str, frames: &[Timed], to: (&str, &[Timed])) {
+    pub(super) fn add_ratios(
+        &mut self,
+        column: &str,
+        frames: &[FrameTime],
+        to: (&str, &[FrameTime]),
+    ) {
         for total in &TOTALS[..2] {
             let pairs = times(frames, total).into_iter().zip(times(to.1, total));
             let ratios = pairs.map(|(ms, to)| ms / to).collect();
@@ -199,7 +204,7 @@ mod tests {
     #[test]
     fn rows_of_a_table_stand_where_each_column_has_them() {
         let world = World::made("general", Kind::General, 3);
-        let mut numbers = Numbers::new("passes", &world, [8, 4]).of([6, 5], "tiles");
+        let mut numbers = Measurements::new("passes", &world, [8, 4]).of([6, 5], "tiles");
         for (column, rows) in [("none", ["sort", "bin"]), ("hard", ["clip", "sort"])] {
             for row in rows {
                 numbers.add(column, row, "ms", vec![3.0, 1.0, 2.0]);

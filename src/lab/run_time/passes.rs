@@ -2,12 +2,12 @@
 
 use rara::{Camera, Mode, Raster, Result};
 
-use super::numbers::Numbers;
+use super::numbers::Measurements;
 use super::run::{Run, in_mode, rasters};
 use super::world::World;
 use crate::frames::{MODES, in_turn, timed};
 
-pub(super) fn measure(run: &mut Run<'_>, world: &World, numbers: Numbers) -> Result<()> {
+pub(super) fn measure(run: &mut Run<'_>, world: &World, numbers: Measurements) -> Result<()> {
     let (mut headless, clip) = (run.headless(world)?, world.keeping(0.5)?);
     let mut rasters = rasters(&headless);
     // Meshes are of no use on a CPU: three times a quad's vertices.

@@ -3,7 +3,7 @@
 use glam::DMat3;
 use rara::{Camera, Clip, Headless, Result};
 
-use super::numbers::Numbers;
+use super::numbers::Measurements;
 use super::run::{Run, in_mode};
 use super::world::World;
 use crate::frames::{MODES, fresh, in_turn, timed};
@@ -12,7 +12,7 @@ const SHARE: f64 = 0.01;
 /// Halvings in the search for the camera that sees the wanted share.
 const STEPS: u32 = 12;
 
-pub(super) fn measure(run: &mut Run<'_>, world: &World, numbers: Numbers) -> Result<()> {
+pub(super) fn measure(run: &mut Run<'_>, world: &World, numbers: Measurements) -> Result<()> {
     let mut headless = run.headless(world)?;
     let camera = world.camera(0, run.options.size())?;
     let mut numbers = numbers.of([camera.width, camera.height], "auto");

@@ -6,13 +6,13 @@ use std::process::Command;
 
 use rara::{Headless, HeadlessDesc, Mode, Raster, Result, Settings};
 
-use super::numbers::Numbers;
+use super::numbers::Measurements;
 use super::world::World;
 use crate::table::Table;
 
 /// What is measured, and how much.
 #[derive(Debug, Clone, Default)]
-pub struct Options {
+pub struct RunTimeOptions {
     /// The names of the sections; all if empty. `correct` is measured in any case.
     pub sections: Vec<String>,
     /// Tiny scenes and one round: only whether everything runs.
@@ -31,7 +31,7 @@ pub struct Options {
     pub device: HeadlessDesc,
 }
 
-impl Options {
+impl RunTimeOptions {
     /// The pictures' width outside of `passes`.
     pub(super) fn size(&self) -> u32 {
         let usual = if self.quick { 64 } else { 1024 };
@@ -53,7 +53,7 @@ pub trait Program {
 
 /// What the sections share.
 pub(super) struct Run<'a> {
-    pub(super) options: &'a Options,
+    pub(super) options: &'a RunTimeOptions,
     pub(super) program: &'a mut dyn Program,
     /// The name of the device and its driver.
     pub(super) device: [String; 2],
@@ -90,7 +90,7 @@ impl Run<'_> {
     }
 
     /// Numbers are complete.
-    pub(super) fn finish(&mut self, numbers: &Numbers) -> Result<()> {
+    pub(super) fn finish(&mut self, numbers: &Measurements) -> Result<()> {
         self.all.rows.extend(numbers.rows(&self.device));
         self.program.take(&numbers.table(), &self.all)
     }

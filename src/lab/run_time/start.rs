@@ -10,7 +10,7 @@ use rara::scene::save_ply;
 use rara::{Error, Result};
 
 use super::child::FIRST;
-use super::numbers::Numbers;
+use super::numbers::Measurements;
 use super::run::Run;
 use super::world::World;
 use crate::frames::in_turn;
@@ -21,7 +21,7 @@ const VARIANTS: [&str; 2] = ["known shaders", "new shaders"];
 /// Steps and what they took, milliseconds.
 type Steps = Vec<(String, f64)>;
 
-pub(super) fn measure(run: &mut Run<'_>, world: &World, mut numbers: Numbers) -> Result<()> {
+pub(super) fn measure(run: &mut Run<'_>, world: &World, mut numbers: Measurements) -> Result<()> {
     let file = world.file.clone().unwrap_or(run.folder.join("start.ply"));
     if world.file.is_none() {
         save_ply(&file, &world.scene)?;

@@ -27,10 +27,10 @@ const FIELDS: [&str; 14] = [
     "x", "y", "z", "f_dc_0", "f_dc_1", "f_dc_2", "opacity", "scale_0", "scale_1", "scale_2",
     "rot_0", "rot_1", "rot_2", "rot_3",
 ];
-type Row = [f32; FIELDS.len()];
+type FileRow = [f32; FIELDS.len()];
 
 /// A sound splat about the origin.
-fn row(random: &mut Random) -> Row {
+fn row(random: &mut Random) -> FileRow {
     let mut within = |low, high| random.range(low, high) as f32;
     let mut row = [0.0; FIELDS.len()];
     row[..3].fill_with(|| within(-1.0, 1.0));
@@ -41,7 +41,7 @@ fn row(random: &mut Random) -> Row {
     row
 }
 
-fn extreme_rows() -> Vec<Row> {
+fn extreme_rows() -> Vec<FileRow> {
     let mut random = Random::new(50);
     let lengths = [1e-25, 1e-20, 1e-10, 1e10, 1e20, 1e25];
     let logits = [-1000.0, 1000.0, 0.0, -90.0, 90.0];
@@ -56,7 +56,7 @@ fn extreme_rows() -> Vec<Row> {
     (0..240).map(one).collect()
 }
 
-fn broken_rows() -> Vec<Row> {
+fn broken_rows() -> Vec<FileRow> {
     let mut random = Random::new(51);
     let bad = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 3.4e38, -3.4e38];
     let one = |index: usize| {
@@ -71,7 +71,7 @@ fn broken_rows() -> Vec<Row> {
 }
 
 /// Writes the rows, loads them back, and cuts what the loader kept.
-fn from_file(rows: &[Row]) -> Case {
+fn from_file(rows: &[FileRow]) -> Case {
     let name = format!("rara-stress-{}-{}.ply", std::process::id(), rows.len());
     let path = std::env::temp_dir().join(name);
     let scene = written(&path, rows);
@@ -89,7 +89,7 @@ fn from_file(rows: &[Row]) -> Case {
     }
 }
 
-fn written(path: &Path, rows: &[Row]) -> Gaussians {
+fn written(path: &Path, rows: &[FileRow]) -> Gaussians {
     let mut bytes = format!(
         "ply\nformat binary_little_endian 1.0\nelement vertex {}\n",
         rows.len()

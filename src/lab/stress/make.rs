@@ -3,7 +3,7 @@
 use glam::{DMat3, DQuat, DVec3, Quat};
 
 use super::Case;
-use rara::reference::{Footprint, View};
+use rara::reference::{Footprint, ViewTransform};
 use rara::scene::Random;
 use rara::{Camera, Clip, ClipOp, Gaussians, Plane, Projection};
 
@@ -140,18 +140,18 @@ pub(super) fn on_plane(
 }
 
 /// A random point of a surface, and its unit normal there.
-pub(super) type Place<'a> = &'a dyn Fn(&mut Random) -> (DVec3, DVec3);
+pub(super) type PlaceFn<'a> = &'a dyn Fn(&mut Random) -> (DVec3, DVec3);
 
 /// Up to `count` splats that a surface cuts.
 pub(super) fn on_surface(
     random: &mut Random,
     camera: &Camera,
-    place: Place<'_>,
+    place: PlaceFn<'_>,
     shape: Deviations<'_>,
     count: usize,
     apart: bool,
 ) -> Gaussians {
-    let view = View::<f64>::new(camera);
+    let view = ViewTransform::<f64>::new(camera);
     let mut scene = Gaussians::default();
     let mut boxes: Vec<[f64; 4]> = Vec::new();
     for _ in 0..100 * count {

@@ -44,7 +44,7 @@ pub struct FormRow {
 
 /// A row of the table.
 #[derive(Debug, Clone, Serialize)]
-pub struct Row {
+pub struct RegimeRow {
     /// The regime.
     pub regime: &'static str,
     /// Splats drawn, in all cases together.
@@ -69,7 +69,7 @@ pub struct Row {
     pub ok: bool,
 }
 
-impl Row {
+impl RegimeRow {
     fn judge(&self, exact: Option<f64>) -> bool {
         let good = |form: &FormRow| {
             let weight = form.form == "rara" || form.weight <= self.target;
@@ -85,9 +85,9 @@ impl Row {
 
 /// Draws every `every`-th case of a regime in every form, and measures. Single splats are drawn by tiles in one case and by
 /// quads in the next, in each form, and by both where cases are left out; crowds by both. Any message of the validation layer is an error.
-pub fn run(headless: &mut Headless, regime: &Regime, every: usize) -> Result<Row> {
+pub fn run(headless: &mut Headless, regime: &Regime, every: usize) -> Result<RegimeRow> {
     let limit = regime.limit;
-    let mut row = Row {
+    let mut row = RegimeRow {
         regime: regime.name,
         splats: 0,
         alpha: 0.0,
@@ -113,7 +113,12 @@ pub fn run(headless: &mut Headless, regime: &Regime, every: usize) -> Result<Row
 }
 
 /// Measures a case. Without a turn both ways of drawing have each form, else every other form.
-fn measure(headless: &mut Headless, case: &Case, turn: Option<usize>, row: &mut Row) -> Result<()> {
+fn measure(
+    headless: &mut Headless,
+    case: &Case,
+    turn: Option<usize>,
+    row: &mut RegimeRow,
+) -> Result<()> {
     let rasters = |form: usize| match turn.map(|turn| (turn + form) % 2) {
         None => &[Raster::Tiles, Raster::Quad][..],
         Some(0) => &[Raster::Tiles],
@@ -187,7 +192,7 @@ fn pictures(
     rasters.iter().map(draw).collect()
 }
 
-fn truth(case: &Case, clip: &Clip, settings: &Settings) -> reference::Frame {
+fn truth(case: &Case, clip: &Clip, settings: &Settings) -> reference::ReferenceFrame {
     reference::render::<f64>(&case.scene, &case.camera, clip, settings)
 }
 

@@ -19,7 +19,7 @@ use rara::{Camera, Clip, Gaussians};
 
 pub use files::regimes as files;
 pub use frames::regimes as frames;
-pub use measure::{FormRow, Row, run};
+pub use measure::{FormRow, RegimeRow, run};
 pub use places::regimes as places;
 pub use planes::regimes as planes;
 pub use regions::regimes as regions;

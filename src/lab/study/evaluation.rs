@@ -6,7 +6,7 @@ use rara::Result;
 use serde::Serialize;
 
 use super::answers::{Answer, Background, Questions, Study};
-use super::files::{Replaced, read};
+use super::files::{StagingFolder, read};
 use super::metric::Metric;
 use crate::statistics::{self, Wilcoxon};
 
@@ -18,7 +18,7 @@ pub struct Evaluation {
     /// Who took part, by their codes.
     pub participants: Vec<Participant>,
     /// Files that a later one of the same participant replaces.
-    pub replaced: Vec<Replaced>,
+    pub replaced: Vec<StagingFolder>,
     /// The metrics, those that nobody answered included.
     pub metrics: Vec<MetricResult>,
     /// The mean signed preference by case, then by metric; `None` where nobody answered.

@@ -10,7 +10,7 @@ use super::answers::{Answers, Study};
 
 /// A file that is not used because its participant saved a later one.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub struct Replaced {
+pub struct StagingFolder {
     /// The participant.
     pub participant: String,
     /// The file that is not used.
@@ -26,7 +26,7 @@ pub struct Replaced {
 pub(super) fn read<P: AsRef<Path>>(
     files: &[P],
     expected: Option<&str>,
-) -> Result<(Study, ByParticipant, Vec<Replaced>)> {
+) -> Result<(Study, ByParticipant, Vec<StagingFolder>)> {
     let mut read: Vec<(PathBuf, Answers)> = Vec::new();
     for file in files {
         let file = file.as_ref();
@@ -85,7 +85,7 @@ fn check_study(
 pub(super) type ByParticipant = BTreeMap<(usize, String), (PathBuf, Answers)>;
 
 /// The file of each participant that was saved last, and the others.
-fn latest(read: Vec<(PathBuf, Answers)>) -> (ByParticipant, Vec<Replaced>) {
+fn latest(read: Vec<(PathBuf, Answers)>) -> (ByParticipant, Vec<StagingFolder>) {
     let mut used = ByParticipant::new();
     let key = |code: &str| (code.chars().count(), code.to_owned());
     let mut pairs = Vec::new();
@@ -100,7 +100,7 @@ fn latest(read: Vec<(PathBuf, Answers)>) -> (ByParticipant, Vec<Replaced>) {
             }
         }
     }
-    let replaced = pairs.into_iter().map(|(participant, file)| Replaced {
+    let replaced = pairs.into_iter().map(|(participant, file)| StagingFolder {
         by: used[&key(&participant)].0.clone(),
         participant,
         file,

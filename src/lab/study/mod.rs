@@ -13,7 +13,7 @@ pub mod report;
 
 pub use answers::{Answer, Answers, Background, Questions, Side, Study, Which};
 pub use evaluation::{Evaluation, MetricResult, Participant, Sample, evaluate};
-pub use files::Replaced;
+pub use files::StagingFolder;
 pub use metric::Metric;
-pub use page::{Written, create, write};
-pub use pictures::Options;
+pub use page::{StudyPage, create, write};
+pub use pictures::StudyOptions;

@@ -8,12 +8,12 @@ use rara::{Camera, Error, Headless, HeadlessDesc, Mode, Result};
 use serde::Serialize;
 
 use super::metric::Metric;
-use super::pictures::{Drawing, Files, Id, Options, columns};
+use super::pictures::{Drawing, Files, Id, StudyOptions, columns};
 use crate::cases::{Case, Source, cases, names, sources};
 
 /// A page that was written.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub struct Written {
+pub struct StudyPage {
     /// The page to open.
     pub page: PathBuf,
     /// The study, as the answers name it.
@@ -31,9 +31,9 @@ pub fn create(
     folder: &Path,
     scenes: &[PathBuf],
     device: &HeadlessDesc,
-    options: &Options,
+    options: &StudyOptions,
     progress: &mut dyn FnMut(usize, usize),
-) -> Result<Written> {
+) -> Result<StudyPage> {
     check(folder, options)?;
     let sources = sources(scenes, options.gaussians)?;
     let all = cases(&sources, options.up, (options.size, options.size))?;
@@ -47,7 +47,7 @@ pub fn create(
 }
 
 /// Fails where the options make no sense, or the folder holds something that is no study.
-fn check(folder: &Path, options: &Options) -> Result<()> {
+fn check(folder: &Path, options: &StudyOptions) -> Result<()> {
     let invalid = |message: &str| Err(Error::Invalid(message.into()));
     if !matches!(options.method, Mode::Rara | Mode::Exact) {
         return invalid(
@@ -99,21 +99,21 @@ struct Data {
     id: String,
     method: &'static str,
     size: u32,
-    sweep: Sweep,
-    groups: Vec<Vec<Asked>>,
-    cases: Vec<Shown>,
+    sweep: SweepPictures,
+    groups: Vec<Vec<Question>>,
+    cases: Vec<CasePictures>,
 }
 
 /// How the steps of a moving cut lie in their picture.
 #[derive(Debug, Serialize)]
-struct Sweep {
+struct SweepPictures {
     frames: u32,
     columns: u32,
     size: u32,
 }
 
 #[derive(Debug, Serialize)]
-struct Asked {
+struct Question {
     key: Metric,
     name: &'static str,
     definition: &'static str,
@@ -122,7 +122,7 @@ struct Asked {
 }
 
 #[derive(Debug, Serialize)]
-struct Shown {
+struct CasePictures {
     name: String,
     hard: Files,
     method: Files,
@@ -137,9 +137,9 @@ pub fn write(
     headless: &mut Headless,
     sources: &[Source],
     cases: &[Case],
-    options: &Options,
+    options: &StudyOptions,
     progress: &mut dyn FnMut(usize, usize),
-) -> Result<Written> {
+) -> Result<StudyPage> {
     check(folder, options)?;
     let pictures = folder.join(PICTURES);
     fs::create_dir_all(&pictures).map_err(Error::io(&pictures))?;
@@ -161,7 +161,7 @@ pub fn write(
         drawing.id.add(name.as_bytes());
         // File names do not tell which of the two is which.
         let start = format!("{PICTURES}/case-{:02}", number + 1);
-        shown.push(Shown {
+        shown.push(CasePictures {
             name: name.clone(),
             hard: drawing.files(case, Mode::Hard, &format!("{start}-1"))?,
             method: drawing.files(case, options.method, &format!("{start}-2"))?,
@@ -170,7 +170,7 @@ pub fn write(
     progress(cases.len(), cases.len());
     let data = Data::of(options, drawing.id, shown);
     data.write(folder)?;
-    Ok(Written {
+    Ok(StudyPage {
         page: folder.join("index.html"),
         study: data.id,
         cases: names,
@@ -178,7 +178,7 @@ pub fn write(
 }
 
 impl Data {
-    fn of(options: &Options, mut id: Id, cases: Vec<Shown>) -> Self {
+    fn of(options: &StudyOptions, mut id: Id, cases: Vec<CasePictures>) -> Self {
         let method = if options.method == Mode::Rara {
             "rara"
         } else {
@@ -192,7 +192,7 @@ impl Data {
             id: id.text(),
             method,
             size: options.size,
-            sweep: Sweep {
+            sweep: SweepPictures {
                 frames: options.frames,
                 columns: columns(options.frames),
                 size: options.frame_size,
@@ -218,8 +218,8 @@ impl Data {
     }
 }
 
-fn asked(metric: &Metric) -> Asked {
-    Asked {
+fn asked(metric: &Metric) -> Question {
+    Question {
         key: *metric,
         name: metric.name(),
         definition: metric.definition(),
@@ -249,26 +249,26 @@ mod tests {
     #[test]
     fn options_that_make_no_sense_and_foreign_folders_are_refused() {
         let folder = std::env::temp_dir().join(format!("rara-study-check-{}", std::process::id()));
-        let plain = Options::default();
+        let plain = StudyOptions::default();
         assert!(check(&folder, &plain).is_ok());
         for options in [
-            Options {
+            StudyOptions {
                 method: Mode::Hard,
                 ..plain.clone()
             },
-            Options {
+            StudyOptions {
                 cases: 0,
                 ..plain.clone()
             },
-            Options {
+            StudyOptions {
                 frames: 1,
                 ..plain.clone()
             },
-            Options {
+            StudyOptions {
                 size: 0,
                 ..plain.clone()
             },
-            Options {
+            StudyOptions {
                 frames: 200,
                 frame_size: 4096,
                 ..plain.clone()

@@ -10,7 +10,7 @@ use crate::cases::Case;
 
 /// What is shown.
 #[derive(Debug, Clone)]
-pub struct Options {
+pub struct StudyOptions {
     /// What is compared with hard cuts: [`Mode::Rara`] or [`Mode::Exact`].
     pub method: Mode,
     /// The number of cases, spread over scenes and cuts; all there are where those are fewer.
@@ -29,7 +29,7 @@ pub struct Options {
     pub background: [f32; 3],
 }
 
-impl Default for Options {
+impl Default for StudyOptions {
     fn default() -> Self {
         Self {
             method: Mode::Exact,
@@ -62,7 +62,7 @@ pub(super) fn columns(frames: u32) -> u32 {
 pub(super) struct Drawing<'a> {
     pub(super) folder: &'a Path,
     pub(super) headless: &'a mut Headless,
-    pub(super) options: &'a Options,
+    pub(super) options: &'a StudyOptions,
     pub(super) id: Id,
 }
 

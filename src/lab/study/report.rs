@@ -16,7 +16,7 @@ use crate::charts::{Axis, Colours, HeatMap, Radar, Values, Violins};
 
 /// What is checked.
 #[derive(Debug, Clone, Default)]
-pub struct Options {
+pub struct ReportOptions {
     /// The study that all answers must belong to; `None` is that of the first file.
     pub study: Option<String>,
 }
@@ -26,7 +26,7 @@ pub struct Options {
 ///
 /// # Errors
 /// As [`evaluate`], and if the folder cannot be written.
-pub fn create(answers: &[PathBuf], folder: &Path, options: &Options) -> Result<Evaluation> {
+pub fn create(answers: &[PathBuf], folder: &Path, options: &ReportOptions) -> Result<Evaluation> {
     let evaluation = evaluate(answers, options.study.as_deref())?;
     write(&evaluation, folder)?;
     Ok(evaluation)
@@ -180,7 +180,7 @@ mod tests {
         all[1].answers.pop();
         let (folder, files) = Files::of("report", &all.iter().collect::<Vec<_>>());
         let out = folder.0.join("report");
-        create(&files, &out, &Options::default()).expect("a report");
+        create(&files, &out, &ReportOptions::default()).expect("a report");
         let read = |name: &str| fs::read_to_string(out.join(name)).expect(name);
         let (html, markdown) = (read("report.html"), read("report.md"));
         for text in [&html, &markdown] {

@@ -6,7 +6,7 @@
 //! without low-pass.
 
 use super::UnitSurface;
-use super::crossing::{Crossed, PHI_ONE, Sight};
+use super::crossing::{PHI_ONE, Sight, SurfaceCrossing};
 use crate::ClipOp;
 use crate::clip::postfix::answer;
 use crate::reference::orthant::{Threshold, both, orthant};
@@ -25,7 +25,7 @@ struct Stretch<T> {
 }
 
 impl<T: Real> Stretch<T> {
-    fn of(crossed: &Crossed<T>) -> Self {
+    fn of(crossed: &SurfaceCrossing<T>) -> Self {
         let place = |z: T, first: bool| match (crossed.first.far, first) {
             (true, true) | (false, false) => -z,
             (false, true) | (true, false) => z,

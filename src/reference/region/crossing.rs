@@ -35,7 +35,7 @@ pub(in crate::reference) struct Sight<T> {
 
 /// A surface on a line of sight: its nearest crossing, and the other one where it counts.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Crossed<T> {
+pub(super) struct SurfaceCrossing<T> {
     /// The half-space that the surface keeps where it is crossed first.
     pub(super) first: Threshold<T>,
     /// The one where it is crossed again.
@@ -188,7 +188,7 @@ impl<T: Real> Sight<T> {
     }
 
     /// The crossings of a surface.
-    pub(super) fn crossed(&self, surface: &UnitSurface<T>) -> Crossed<T> {
+    pub(super) fn crossed(&self, surface: &UnitSurface<T>) -> SurfaceCrossing<T> {
         let (value, gradient) = (surface.at(self.mean), surface.gradient(self.mean));
         let (n, along) = self.steepest(gradient);
         let bend = surface.bend.form(along);
@@ -196,7 +196,7 @@ impl<T: Real> Sight<T> {
         let (two, four) = (T::of(2.0), T::of(4.0));
         let square = n * n - four * bend * value;
         let far_away = T::of(FAR_AWAY).copysign(value);
-        let alone = |z: T, gradient| Crossed {
+        let alone = |z: T, gradient| SurfaceCrossing {
             first: self.threshold(z, gradient),
             second: None,
             between: true,
@@ -215,13 +215,13 @@ impl<T: Real> Sight<T> {
         let other = -sum / (two * bend);
         let is_near = other.abs() < T::of(FAR_AWAY);
         if !is_near {
-            return Crossed {
+            return SurfaceCrossing {
                 first,
                 second: None,
                 between: true,
             };
         }
-        Crossed {
+        SurfaceCrossing {
             first,
             second: Some(self.threshold(other, gradient + across * other)),
             between: bend < T::zero(),
@@ -293,7 +293,7 @@ impl<T: Real> Sight<T> {
     }
 }
 
-impl<T: Real> Crossed<T> {
+impl<T: Real> SurfaceCrossing<T> {
     /// The share that the surface keeps by itself.
     pub(super) fn share(&self) -> T {
         match self.second {

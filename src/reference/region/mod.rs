@@ -23,7 +23,7 @@ pub(super) use crossing::Sight;
 pub use gaussian_side::gaussian_side;
 pub use half_space::HalfSpace;
 pub use quadric::{Symmetric, UnitSurface};
-pub use reduced::Reduced;
+pub use reduced::RegionRest;
 pub(super) use reduced::reduced;
 pub use share::share;
 pub(super) use sides::keeps;

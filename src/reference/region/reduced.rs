@@ -9,14 +9,14 @@ use crate::{Clip, ClipOp, Gaussians, Settings};
 
 /// What is left of a region.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Reduced<T> {
+pub enum RegionRest<T> {
     /// All or nothing is kept.
     Decided(bool),
     /// The surfaces that cut the Gaussian. After each, its joins replace the two answers on top of a stack.
     Cut(Vec<(UnitSurface<T>, Vec<ClipOp>)>),
 }
 
-impl<T: Real> Reduced<T> {
+impl<T: Real> RegionRest<T> {
     fn join(self, op: ClipOp, other: Self) -> Self {
         match (self, other) {
             (Self::Decided(kept), rest) | (rest, Self::Decided(kept)) => {
@@ -55,7 +55,7 @@ pub(in crate::reference) fn reduced<T: Real>(
     deviations: T,
     clip: &Clip,
     settings: &Settings,
-) -> Reduced<T> {
+) -> RegionRest<T> {
     let steps = postfix(clip);
     let seen: Vec<_> = steps
         .iter()
@@ -83,12 +83,12 @@ pub(in crate::reference) fn reduced<T: Real>(
     let answers = numbered.zip(steps).map(|((index, (side, surface)), step)| {
         let part = match side {
             Side::Cutoff if nearest.contains(&index) => {
-                Reduced::Cut(vec![(surface.scaled(), Vec::new())])
+                RegionRest::Cut(vec![(surface.scaled(), Vec::new())])
             }
-            Side::Cutoff => Reduced::Decided(surface.half_space.offset >= T::zero()),
-            side => Reduced::Decided(side == Side::Visible),
+            Side::Cutoff => RegionRest::Decided(surface.half_space.offset >= T::zero()),
+            side => RegionRest::Decided(side == Side::Visible),
         };
         (part, step.joins)
     });
-    answer(answers, Reduced::Decided(true), |op, a, b| a.join(op, b))
+    answer(answers, RegionRest::Decided(true), |op, a, b| a.join(op, b))
 }

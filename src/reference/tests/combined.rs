@@ -68,7 +68,7 @@ struct Errors {
 fn study(pixels: [f64; 2], count: usize, sizes: [f64; 2], cases: usize, steps: u32) -> Errors {
     let mut dice = Dice(77 + count as u64);
     let camera = camera(640, 480, 500.0);
-    let view = View::<f64>::new(&camera);
+    let view = ViewTransform::<f64>::new(&camera);
     let (mut errors, mut mass, mut done) = (Errors::default(), 0.0, 0);
     while done < cases {
         let size = pixels[0] * (pixels[1] / pixels[0]).powf(dice.next());
@@ -179,7 +179,7 @@ fn combinations_keep_what_integration_finds() {
 fn a_region_and_its_complement_keep_the_whole() {
     let mut dice = Dice(5);
     let camera = camera(640, 480, 500.0);
-    let view = View::<f64>::new(&camera);
+    let view = ViewTransform::<f64>::new(&camera);
     let mut partial = 0;
     for round in 0..200 {
         let one = dice.one(0.02 * 3_f64.powi(round % 5), 10.0);

@@ -38,7 +38,8 @@ fn errors_in(view: &Camera, sigma: f64, (op, planes, slab): (ClipOp, usize, bool
             ..mode(Mode::Exact)
         };
         let scene = scene(&[one]);
-        let footprint = Footprint::<f64>::new(&scene, 0, &View::new(view)).expect("in view");
+        let footprint =
+            Footprint::<f64>::new(&scene, 0, &ViewTransform::new(view)).expect("in view");
         let depth = SplatDepth::new(&scene, 0, &footprint, &clip, &settings);
         let whole = SplatDepth::new(&scene, 0, &footprint, &NO_CLIP, &settings);
         let [k0, k1, k2] = footprint.conic;
@@ -46,12 +47,20 @@ fn errors_in(view: &Camera, sigma: f64, (op, planes, slab): (ClipOp, usize, bool
         let (u, v) = (dice.between(-1.4, 1.4), dice.between(-1.4, 1.4));
         let dx = u / k0;
         let dy = (v - k1 * dx) / k2;
-        let cut = cutoff::cutoff(&scene, 0, &footprint, &View::new(view), &clip, &settings);
+        let cut = cutoff::cutoff(
+            &scene,
+            0,
+            &footprint,
+            &ViewTransform::new(view),
+            &clip,
+            &settings,
+        );
         let cut = cut.expect("traced");
         // A plane counts as absent that is eight deviations away where the splat's centre is seen, even if it is so steep
         // that it cuts elsewhere: one along the line of sight through a splat of many pixels.
         let is_absent = |plane: &AffinePlane<f64>| plane.z[0] > 8.0;
-        let has_absent = matches!(&cut, Cut::Affine { planes, .. } if planes.iter().any(is_absent));
+        let has_absent =
+            matches!(&cut, SplatCut::Affine { planes, .. } if planes.iter().any(is_absent));
         if has_absent || cut.weight(dx, dy) < 1e-3 {
             continue;
         }

@@ -9,10 +9,10 @@ use proptest::prelude::*;
 /// How far two halves may be from the whole, as alpha or as weight. Doubles: rounding. Singles: each half is rounded
 /// to 6e-8 of itself, and so is what it is computed from. Where the eye is within the splat a plane's distance counts
 /// against how fast the tail in front of it falls.
-fn tolerance<T: Real>(cut: &Cut<T>) -> f64 {
+fn tolerance<T: Real>(cut: &SplatCut<T>) -> f64 {
     let rounding = if size_of::<T>() == 4 { 2e-7 } else { 1e-14 };
     match cut {
-        Cut::Beam(beam) if beam.front.is_some() => 1e4 * rounding,
+        SplatCut::Beam(beam) if beam.front.is_some() => 1e4 * rounding,
         _ => rounding,
     }
 }
@@ -167,7 +167,7 @@ proptest! {
         }).collect();
         let weight = |one: One, camera: &Camera, planes: &[Plane]| {
             let case = Case { one, ..case.clone() };
-            case.seen::<f64>(&View::new(camera), planes).map(|(w, _)| w)
+            case.seen::<f64>(&ViewTransform::new(camera), planes).map(|(w, _)| w)
         };
         let slack = 1e-13 * (position.length() + step.length() + 1.0);
         let shifted = |by: f64| -> Vec<_> {
@@ -194,8 +194,8 @@ proptest! {
         let near = f64::from(crate::limits::NEAR_Z);
         if f64::from(one.position[2]) >= near && f64::from(case.one.position[2]) >= near {
             let camera = other.camera(factor);
-            let double = other.seen::<f64>(&View::new(&camera), &scaled(factor));
-            let single = other.seen::<f32>(&View::new(&camera), &scaled(factor));
+            let double = other.seen::<f64>(&ViewTransform::new(&camera), &scaled(factor));
+            let single = other.seen::<f32>(&ViewTransform::new(&camera), &scaled(factor));
             prop_assert_eq!(case.weight::<f64>(&scaled(1.0)), double.map(|(weight, _)| weight));
             prop_assert_eq!(case.weight::<f32>(&scaled(1.0)), single.map(|(weight, _)| weight));
         }
@@ -227,7 +227,7 @@ proptest! {
 fn what_is_antialiased_has_the_light_that_it_has_without_the_low_pass() {
     // The integral of alpha over the picture is the opacity times 2 pi times the root of the covariance's determinant.
     let mut dice = Dice(5);
-    let view = View::<f64>::new(&camera(64, 48, 100.0));
+    let view = ViewTransform::<f64>::new(&camera(64, 48, 100.0));
     let mut darkest = 1.0_f64;
     for round in 0..200 {
         let one = dice.one([0.012, 0.03, 0.5][round % 3], 4.0);
@@ -266,7 +266,7 @@ fn what_makes_up_for_the_low_pass_leaves_a_share() {
     };
     let mut scene = scene(&[one]);
     scene.set_antialiased(true);
-    let view = View::<f64>::new(&camera(64, 64, 100.0));
+    let view = ViewTransform::<f64>::new(&camera(64, 64, 100.0));
     let footprint = Footprint::new(&scene, 0, &view).expect("0.005 is above 1/255");
     assert!((footprint.opacity - 0.005).abs() < 1e-6);
     scene.opacities_mut()[0] = 0.7;
@@ -282,7 +282,7 @@ fn a_picture_twice_as_large_is_another_picture_of_small_splats() {
     };
     let variance = |factor: f64| {
         let size = (64.0 * factor) as u32;
-        let view = View::<f64>::new(&camera(size, size, 100.0 * factor));
+        let view = ViewTransform::<f64>::new(&camera(size, size, 100.0 * factor));
         let footprint = Footprint::new(&scene(&[one]), 0, &view).unwrap();
         (footprint.half_sides[0] / footprint.extent).powi(2)
     };

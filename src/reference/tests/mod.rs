@@ -107,8 +107,13 @@ fn mode(mode: Mode) -> Settings {
 }
 
 /// The cut record of a scene's only Gaussian.
-fn cut(scene: &Gaussians, camera: &Camera, clip: &Clip, settings: &Settings) -> Option<Cut<f64>> {
-    let view = View::new(camera);
+fn cut(
+    scene: &Gaussians,
+    camera: &Camera,
+    clip: &Clip,
+    settings: &Settings,
+) -> Option<SplatCut<f64>> {
+    let view = ViewTransform::new(camera);
     let footprint = Footprint::new(scene, 0, &view).expect("the Gaussian is in view");
     cutoff::cutoff(scene, 0, &footprint, &view, clip, settings)
 }

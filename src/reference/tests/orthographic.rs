@@ -69,7 +69,7 @@ fn the_footprint_is_the_projected_covariance_wherever_the_centre_is() {
         ..camera(100, 80, 1.0)
     };
     let camera = camera.projection(Projection::Orthographic);
-    let view = View::<f64>::new(&camera);
+    let view = ViewTransform::<f64>::new(&camera);
     let mut compared = 0;
     for _ in 0..1000 {
         let local = DVec3::new(
@@ -116,7 +116,7 @@ fn the_chord_of_mode_rara_runs_along_the_view_axis() {
         let one = dice.one([0.05, 0.3, 5.0][i % 3], 5.0);
         let cutter = plane_through(&one, dice.direction(), dice.between(-2.0, 2.0));
         let scene = scene(&[one]);
-        let Some(footprint) = Footprint::<f64>::new(&scene, 0, &View::new(&camera)) else {
+        let Some(footprint) = Footprint::<f64>::new(&scene, 0, &ViewTransform::new(&camera)) else {
             continue;
         };
         let [dx, dy] = footprint.conic.map(|k| dice.between(-2.0, 2.0) / k)[..2] else {

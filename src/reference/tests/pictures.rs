@@ -222,7 +222,7 @@ fn the_footprint_is_the_published_ewa_projection_with_matrices() {
             position: world.to_array(),
             ..one
         };
-        let view = View::<f64>::new(&camera);
+        let view = ViewTransform::<f64>::new(&camera);
         let Some(footprint) = Footprint::new(&scene(&[one]), 0, &view) else {
             continue;
         };

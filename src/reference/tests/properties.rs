@@ -108,12 +108,16 @@ impl Case {
     }
 
     /// The same, and the record that it came from.
-    pub(super) fn cut<T: Real>(&self, planes: &[Plane]) -> Option<(f64, Cut<T>)> {
+    pub(super) fn cut<T: Real>(&self, planes: &[Plane]) -> Option<(f64, SplatCut<T>)> {
         self.seen(&self.view(), planes)
     }
 
     /// The same for another view.
-    pub(super) fn seen<T: Real>(&self, view: &View<T>, planes: &[Plane]) -> Option<(f64, Cut<T>)> {
+    pub(super) fn seen<T: Real>(
+        &self,
+        view: &ViewTransform<T>,
+        planes: &[Plane],
+    ) -> Option<(f64, SplatCut<T>)> {
         let scene = scene(&[self.one]);
         let footprint = Footprint::new(&scene, 0, view)?;
         let clip = clip(self.op, planes);
@@ -123,8 +127,8 @@ impl Case {
         Some((cut.weight(dx, dy).wide(), cut))
     }
 
-    pub(super) fn view<T: Real>(&self) -> View<T> {
-        View::new(&self.camera(1.0))
+    pub(super) fn view<T: Real>(&self) -> ViewTransform<T> {
+        ViewTransform::new(&self.camera(1.0))
     }
 
     /// The camera of a world whose unit is so many times as large.

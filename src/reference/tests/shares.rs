@@ -198,7 +198,7 @@ fn the_two_forms_agree_for_small_splats() {
             let one = dice.one(sigma, 10.0);
             let cutter = plane_through(&one, dice.direction(), dice.between(-2.0, 2.0));
             let offset = [dice.normal(), dice.normal()];
-            let view = View::<f64>::new(&camera(64, 64, 100.0));
+            let view = ViewTransform::<f64>::new(&camera(64, 64, 100.0));
             let footprint = Footprint::new(&scene(&[one]), 0, &view);
             let Some(footprint) = footprint else { continue };
             let alpha = (-0.5 * footprint.power(offset[0], offset[1])).exp();
@@ -242,7 +242,7 @@ fn auto_takes_the_perspective_form_for_what_is_large_or_outside_the_picture() {
             &clip(ClipOp::And, &[cutter]),
             &exact(form),
         );
-        matches!(record, Some(Cut::Beam(_)))
+        matches!(record, Some(SplatCut::Beam(_)))
     };
     let camera = camera(64, 64, 100.0);
     let sized = |sigma: f32| One {

@@ -102,7 +102,10 @@ fn loss(regime: &Regime, settings: &Settings, count: usize) -> (f64, f64) {
         Projection::Orthographic => camera(640, 480, 500.0 / regime.depth[0].max(2.0)),
     };
     let camera = camera.projection(regime.projection).eye(regime.eye);
-    let (wide, single) = (View::<f64>::new(&camera), View::<f32>::new(&camera));
+    let (wide, single) = (
+        ViewTransform::<f64>::new(&camera),
+        ViewTransform::<f32>::new(&camera),
+    );
     let (mut max, mut sum, mut mass) = (0.0_f64, 0.0, 0.0);
     for _ in 0..count {
         let depth = dice.between(regime.depth[0], regime.depth[1]);

@@ -76,7 +76,7 @@ impl Study {
             Projection::Orthographic => 100.0,
         };
         let camera = camera(640, 480, focal).projection(self.projection);
-        let view = View::<f64>::new(&camera);
+        let view = ViewTransform::<f64>::new(&camera);
         let mut errors = Errors::default();
         let mut mass = 0.0;
         while errors.count < self.cases {
@@ -322,7 +322,7 @@ fn the_last_of_a_splat_in_front_of_the_eye_is_cut_like_the_rest() {
         ..One::default()
     };
     let scene = scene(&[one]);
-    let view = View::<f64>::new(&camera);
+    let view = ViewTransform::<f64>::new(&camera);
     let footprint = Footprint::new(&scene, 0, &view).expect("in view");
     let clip = clip(
         ClipOp::And,

@@ -66,7 +66,7 @@ fn the_chord_is_the_papers_quadratic() {
         let cutter = plane_through(&one, dice.direction(), dice.between(-2.0, 2.0));
         let sigma = [1.0, 2.0, 3.0][i % 3];
         let scene = scene(&[one]);
-        let Some(footprint) = Footprint::<f64>::new(&scene, 0, &View::new(&camera)) else {
+        let Some(footprint) = Footprint::<f64>::new(&scene, 0, &ViewTransform::new(&camera)) else {
             continue;
         };
         let pixel = [dice.between(0.0, 64.0), dice.between(0.0, 64.0)];
@@ -177,7 +177,7 @@ fn class(op: ClipOp, deviations: &[f64], settings: &Settings) -> Side {
         .iter()
         .map(|d| plane([0.0, 0.0, 2.0], 2.0 * (f64::from(0.1_f32) * d - 4.0)))
         .collect();
-    let view = View::<f64>::new(&camera(64, 64, 100.0));
+    let view = ViewTransform::<f64>::new(&camera(64, 64, 100.0));
     classify::classify(&scene(&[one]), &view, &clip(op, &planes), settings)[0]
 }
 
@@ -268,7 +268,7 @@ fn the_plane_distance_holds_far_from_the_origin() {
         ..camera(64, 64, 100.0)
     };
     let cutter = plane([0.0, 0.0, 1.0], -(1e6 + 4.0) + 0.0625);
-    let view = View::<f32>::new(&camera);
+    let view = ViewTransform::<f32>::new(&camera);
     let scene = scene(&[one]);
     let footprint = Footprint::new(&scene, 0, &view).unwrap();
     let record = cutoff::cutoff(

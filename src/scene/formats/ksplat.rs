@@ -1,9 +1,9 @@
 //! `.ksplat`: sections of Gaussians, in full precision or relative to the centres of buckets.
 
-use super::super::assemble::{OPACITY, SCALES, SH, SLOTS, Stored};
+use super::super::assemble::{ColumnForm, OPACITY, SCALES, SH, SLOTS};
 use super::super::sh_coefficients;
 use super::bytes::{Bytes, f16_at, f32_at, u16_at};
-use super::{Failure, Made, colour, room};
+use super::{Failure, FormatOutput, colour, room};
 use crate::counted::counted;
 
 /// Bytes of the file's header, and of each section's.
@@ -14,7 +14,7 @@ const STEPS: u32 = 32767;
 /// The range of spherical harmonics in bytes where the file does not say.
 const SH_RANGE: f32 = 1.5;
 
-struct Header {
+struct KsplatHeader {
     version: [u8; 2],
     /// Section headers that there is room for, and those in use (0 for all).
     sections: u32,
@@ -25,7 +25,7 @@ struct Header {
     sh_range: [f32; 2],
 }
 
-fn header(bytes: &[u8]) -> Result<Header, String> {
+fn header(bytes: &[u8]) -> Result<KsplatHeader, String> {
     let mut bytes = Bytes(bytes);
     let what = "the header";
     let version = [bytes.u8(what)?, bytes.u8(what)?];
@@ -36,7 +36,7 @@ fn header(bytes: &[u8]) -> Result<Header, String> {
     bytes.take(14, what)?; // nothing, and the middle of the scene
     let [low, high] = [bytes.f32(what)?, bytes.f32(what)?];
     let or = |value: f32, default: f32| if value == 0.0 { default } else { value };
-    Ok(Header {
+    Ok(KsplatHeader {
         version,
         sections,
         used,
@@ -153,7 +153,7 @@ impl<'a> Section<'a> {
     }
 }
 
-pub(super) fn read(bytes: &[u8]) -> Result<Made, Failure> {
+pub(super) fn read(bytes: &[u8]) -> Result<FormatOutput, Failure> {
     let header = header(bytes)?;
     if record(header.level, 0).is_none() {
         return Err(Failure::Format(format!(
@@ -182,7 +182,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Made, Failure> {
         .map(|s| (s.records.len() / s.record) as u64)
         .sum();
     let degree = sections.iter().map(|section| section.degree).max();
-    let mut made = room(count, degree.unwrap_or(0), Stored::Plain)?;
+    let mut made = room(count, degree.unwrap_or(0), ColumnForm::Plain)?;
     for section in &sections {
         let mut buckets = section.buckets();
         for (index, record) in section.records.chunks_exact(section.record).enumerate() {
@@ -221,7 +221,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Made, Failure> {
 }
 
 /// Spherical harmonics above degree 0, which lie degree by degree and, in each, channel by channel.
-fn harmonics(bytes: &[u8], degree: u32, header: &Header, to: &mut [f64]) {
+fn harmonics(bytes: &[u8], degree: u32, header: &KsplatHeader, to: &mut [f64]) {
     let [low, high] = header.sh_range.map(f64::from);
     let number = |index: usize| match header.level {
         0 => f32_at(bytes, 4 * index),

@@ -14,7 +14,7 @@ use std::io::Read;
 use std::path::Path;
 
 pub(super) use self::write::WRITERS;
-use super::assemble::{Assembler, Stored};
+use super::assemble::{Assembler, ColumnForm};
 use super::load::{Input, Progress};
 use super::{Format, Gaussians, LoadReport, Loaded, Property, SH_0};
 use crate::counted::counted;
@@ -45,7 +45,7 @@ impl From<Error> for Failure {
 
 /// What a reader makes of a file.
 #[derive(Default)]
-struct Made {
+struct FormatOutput {
     gaussians: Gaussians,
     report: LoadReport,
     /// The file's elements, those included that were dropped.
@@ -54,7 +54,7 @@ struct Made {
     dropped: Vec<u64>,
 }
 
-impl From<Assembler> for Made {
+impl From<Assembler> for FormatOutput {
     fn from(mut assembler: Assembler) -> Self {
         let (elements, dropped) = (assembler.rows, std::mem::take(&mut assembler.dropped));
         let (loaded, _) = assembler.finish();
@@ -67,7 +67,7 @@ impl From<Assembler> for Made {
     }
 }
 
-impl Made {
+impl FormatOutput {
     /// Appends what another part of the file has become.
     fn append(&mut self, other: Self) -> std::result::Result<(), Failure> {
         let before = self.elements;
@@ -113,7 +113,7 @@ impl Made {
 }
 
 /// An assembler with room for so many Gaussians, for which the file has bytes.
-fn room(count: u64, sh_degree: u32, stored: Stored) -> std::result::Result<Assembler, Failure> {
+fn room(count: u64, sh_degree: u32, stored: ColumnForm) -> std::result::Result<Assembler, Failure> {
     if count > u64::from(u32::MAX) {
         return Err(Failure::Format(format!(
             "{} are more than the {} that can be numbered; split the file",
@@ -132,7 +132,7 @@ fn colour(byte: u8) -> f64 {
 }
 
 /// What a reader makes of a file, and which format that is.
-type Outcome = std::result::Result<(Made, Format), Failure>;
+type Outcome = std::result::Result<(FormatOutput, Format), Failure>;
 
 /// How files of a format are read.
 struct Reader(

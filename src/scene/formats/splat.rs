@@ -1,8 +1,8 @@
 //! `.splat`: nothing but records of 32 bytes, so that only their content tells them from something else.
 
-use super::super::assemble::{OPACITY, ROTATION, SCALES, SH, SLOTS, Stored};
+use super::super::assemble::{ColumnForm, OPACITY, ROTATION, SCALES, SH, SLOTS};
 use super::bytes::f32_at;
-use super::{Failure, Made, colour, room};
+use super::{Failure, FormatOutput, colour, room};
 
 /// Bytes of one Gaussian: centre and scales in single precision, red, green, blue and opacity, and the quaternion, w
 /// first, in bytes about 128.
@@ -29,9 +29,9 @@ fn quaternion(record: &[u8]) -> [f64; 4] {
     [28, 29, 30, 31].map(|at| (f64::from(record[at]) - 128.0) / 128.0)
 }
 
-pub(super) fn read(bytes: &[u8]) -> Result<Made, Failure> {
+pub(super) fn read(bytes: &[u8]) -> Result<FormatOutput, Failure> {
     let records = bytes.chunks_exact(RECORD);
-    let mut made = room(records.len() as u64, 0, Stored::Plain)?;
+    let mut made = room(records.len() as u64, 0, ColumnForm::Plain)?;
     let mut row = [0.0; SLOTS];
     for record in records {
         for (slot, to) in row[..ROTATION].iter_mut().enumerate() {

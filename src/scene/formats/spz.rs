@@ -1,10 +1,10 @@
 //! `.spz`: each attribute in a run of its own, quantised; all in one gzip stream (versions 1 to 3), or each in a stream of
 //! zstd (version 4).
 
-use super::super::assemble::{OPACITY, ROTATION, SCALES, SH, SLOTS, Stored, unit_quaternion};
+use super::super::assemble::{ColumnForm, OPACITY, ROTATION, SCALES, SH, SLOTS, unit_quaternion};
 use super::bytes::{Bytes, f16_at};
 use super::inflate::{self, Gzip};
-use super::{Failure, Made, room};
+use super::{Failure, FormatOutput, room};
 use crate::counted::counted;
 
 const MAGIC: &[u8; 4] = b"NGSP";
@@ -22,7 +22,7 @@ const MOST_EXTENSIONS: u64 = 1 << 20;
 /// The colours' range: a byte's 0 to 1 are 0.5 less, and then 0.15 of the coefficient.
 pub(super) const COLOUR: f64 = 0.15;
 
-struct Header {
+struct SpzHeader {
     version: u32,
     count: u64,
     degree: u32,
@@ -31,7 +31,7 @@ struct Header {
     streams: u8,
 }
 
-impl Header {
+impl SpzHeader {
     fn read(bytes: &[u8]) -> Result<Self, String> {
         let what = "the .spz header";
         let mut bytes = Bytes(bytes);
@@ -86,9 +86,9 @@ impl Header {
     }
 
     /// The Gaussians of six runs; `axes` are the signs that turn the file's axes into ours.
-    fn made(&self, runs: [&[u8]; 6], axes: [f64; 3]) -> Result<Made, Failure> {
+    fn made(&self, runs: [&[u8]; 6], axes: [f64; 3]) -> Result<FormatOutput, Failure> {
         let degree = self.degree.min(3);
-        let mut made = room(self.count, degree, Stored::LogScales)?;
+        let mut made = room(self.count, degree, ColumnForm::LogScales)?;
         let [position, _, _, _, rotation, harmonics] = self.sizes().map(|size| size as usize);
         let unit = f64::from(1_u32 << self.fraction_bits).recip();
         let sh_signs = signs(axes);
@@ -140,7 +140,7 @@ impl Header {
             made.report
                 .note("left out the spherical harmonics of degree 4, which are not drawn".into());
         }
-        let mut made = Made::from(made);
+        let mut made = FormatOutput::from(made);
         made.gaussians
             .set_antialiased(self.flags & ANTIALIASED != 0);
         Ok(made)
@@ -218,13 +218,13 @@ fn extensions(bytes: &[u8]) -> Result<Option<[f64; 3]>, String> {
 }
 
 /// Reads a whole file. The axes become ours where that is wanted; in glTF they are glTF's already.
-pub(super) fn read(bytes: &[u8], turn: bool) -> Result<Made, Failure> {
+pub(super) fn read(bytes: &[u8], turn: bool) -> Result<FormatOutput, Failure> {
     let axes = |said: Option<[f64; 3]>| match turn {
         true => said.unwrap_or(RIGHT_UP_BACK),
         false => [1.0; 3],
     };
     if bytes.starts_with(MAGIC) {
-        let header = Header::read(bytes)?;
+        let header = SpzHeader::read(bytes)?;
         return match header.version {
             4 => read_streams(&header, bytes, axes),
             _ => {
@@ -239,7 +239,7 @@ pub(super) fn read(bytes: &[u8], turn: bool) -> Result<Made, Failure> {
         };
     }
     let mut gzip = Gzip::new(bytes);
-    let header = Header::read(&gzip.next(HEADER)?)?;
+    let header = SpzHeader::read(&gzip.next(HEADER)?)?;
     if header.version == 4 {
         return Err(Failure::Format(
             ".spz of version 4 is not compressed as a whole; decompress it with gzip first".into(),
@@ -260,14 +260,14 @@ pub(super) fn read(bytes: &[u8], turn: bool) -> Result<Made, Failure> {
     Ok(made)
 }
 
-fn too_many(header: &Header) -> Failure {
+fn too_many(header: &SpzHeader) -> Failure {
     Failure::Format(format!(
         "the header promises {}, for which the file is too short; it is cut off, get it again",
         counted(header.count, "Gaussian")
     ))
 }
 
-fn said(header: &Header, after: &[u8]) -> Result<Option<[f64; 3]>, String> {
+fn said(header: &SpzHeader, after: &[u8]) -> Result<Option<[f64; 3]>, String> {
     match header.flags & HAS_EXTENSIONS {
         0 => Ok(None),
         _ => extensions(after),
@@ -275,7 +275,7 @@ fn said(header: &Header, after: &[u8]) -> Result<Option<[f64; 3]>, String> {
 }
 
 /// What follows the Gaussians is nothing where it is said to be there.
-fn trailing(header: &Header, left: u64) -> u64 {
+fn trailing(header: &SpzHeader, left: u64) -> u64 {
     if header.flags & HAS_EXTENSIONS == 0 {
         left
     } else {
@@ -284,7 +284,7 @@ fn trailing(header: &Header, left: u64) -> u64 {
 }
 
 /// The runs of a payload of the header's size.
-fn split<'a>(header: &Header, mut payload: &'a [u8]) -> [&'a [u8]; 6] {
+fn split<'a>(header: &SpzHeader, mut payload: &'a [u8]) -> [&'a [u8]; 6] {
     header.sizes().map(|size| {
         let (run, rest) = payload.split_at((size * header.count) as usize);
         payload = rest;
@@ -294,10 +294,10 @@ fn split<'a>(header: &Header, mut payload: &'a [u8]) -> [&'a [u8]; 6] {
 
 /// Version 4: a table of streams, one for each run.
 fn read_streams(
-    header: &Header,
+    header: &SpzHeader,
     bytes: &[u8],
     axes: impl Fn(Option<[f64; 3]>) -> [f64; 3],
-) -> Result<Made, Failure> {
+) -> Result<FormatOutput, Failure> {
     if !inflate::may_become(bytes.len(), header.size()) {
         return Err(too_many(header));
     }

@@ -4,11 +4,11 @@ use std::io::{BufRead, BufReader, Read};
 
 use super::Progress;
 use super::binary::Failure;
-use super::header::Header;
+use super::header::PlyHeader;
 use super::layout::{Field, Layout};
 use crate::counted::counted;
 use crate::error::shortened;
-use crate::scene::assemble::{Assembler, Row};
+use crate::scene::assemble::{Assembler, GaussianRow};
 
 /// A Gaussian takes about 1 kB; a longer line than this is not text at all.
 const MAX_LINE: u64 = 4 << 20;
@@ -26,7 +26,7 @@ struct Lines<R> {
 pub(super) fn read<R: Read>(
     source: R,
     left: u64,
-    header: &Header,
+    header: &PlyHeader,
     layout: &Layout<'_>,
     assembler: &mut Assembler,
     progress: &mut Progress<'_>,
@@ -92,7 +92,7 @@ impl<R: Read> Lines<R> {
 }
 
 /// Splits a line into the numbers of a row.
-fn parse(line: &[u8], fields: &[Field], row: &mut Row) -> Result<(), String> {
+fn parse(line: &[u8], fields: &[Field], row: &mut GaussianRow) -> Result<(), String> {
     let mut words = line
         .split(u8::is_ascii_whitespace)
         .filter(|word| !word.is_empty());

@@ -5,7 +5,7 @@ use std::io::{self, BufRead, BufReader, ErrorKind, Read, Seek};
 use ply_rs::ply::{ElementDef, Encoding};
 
 use super::Progress;
-use super::header::Header;
+use super::header::PlyHeader;
 use super::layout::{Field, Layout, fixed_size};
 use super::number::Number;
 use crate::scene::assemble::Assembler;
@@ -36,7 +36,7 @@ struct Payload<R> {
 pub(super) fn read<R: Read + Seek>(
     source: R,
     left: u64,
-    header: &Header,
+    header: &PlyHeader,
     layout: &Layout<'_>,
     assembler: &mut Assembler,
     progress: &mut Progress<'_>,

@@ -8,7 +8,7 @@ use std::collections::HashSet;
 use ply_rs::parser::{Parser, Reader};
 use ply_rs::ply::{DefaultElement, ElementDef, Encoding, PropertyType, ScalarType};
 
-use super::trained::Kind;
+use super::trained::TrainerKind;
 use crate::error::shortened;
 
 /// Headers of real files are below 5 kB; this leaves room for long comments. No more is read before the header is known.
@@ -19,7 +19,7 @@ const MAX_PROPERTIES: usize = 4096;
 
 /// A header that passed every check that needs no knowledge of Gaussians.
 #[derive(Debug)]
-pub(super) struct Header {
+pub(super) struct PlyHeader {
     pub(super) encoding: Encoding,
     /// In file order.
     pub(super) elements: Vec<ElementDef>,
@@ -30,10 +30,10 @@ pub(super) struct Header {
     /// The byte that ends each line of an ascii payload.
     pub(super) line_end: u8,
     /// What the comments say of the Gaussians.
-    pub(super) kind: Option<Kind>,
+    pub(super) kind: Option<TrainerKind>,
 }
 
-impl Header {
+impl PlyHeader {
     /// Parses the header at the start of `bytes`, the file's first [`MAX_BYTES`] (or all of it, if shorter).
     pub(super) fn parse(bytes: &[u8]) -> Result<Self, String> {
         let (lines, size, line_end) = cut(bytes)?;
@@ -61,7 +61,7 @@ impl Header {
             size: size as u64,
             lines: lines.len() as u64,
             line_end,
-            kind: Kind::of(&lines),
+            kind: TrainerKind::of(&lines),
         })
     }
 }

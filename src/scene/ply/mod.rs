@@ -13,9 +13,9 @@ use std::io::{Read, SeekFrom};
 use ply_rs::ply::Encoding;
 
 use self::binary::Failure;
-use self::header::Header;
+use self::header::PlyHeader;
 use self::layout::Layout;
-use self::trained::Kind;
+use self::trained::TrainerKind;
 use super::assemble::Assembler;
 use super::load::{Input, Loaded, Progress};
 use super::{Format, Property};
@@ -38,7 +38,7 @@ pub(super) fn read(
     let limit = header::MAX_BYTES as u64;
     let mut beginning = (&mut *source).take(limit);
     beginning.read_to_end(&mut start).map_err(Error::io(name))?;
-    let header = Header::parse(&start).map_err(format)?;
+    let header = PlyHeader::parse(&start).map_err(format)?;
     drop(start);
 
     let memory = |count: u64| {
@@ -57,7 +57,7 @@ pub(super) fn read(
                 crate::error::shortened(property)
             )));
         }
-        if header.kind == Some(Kind::Discs) {
+        if header.kind == Some(TrainerKind::Discs) {
             return Err(format(trained::DISCS.into()));
         }
         let start = SeekFrom::Start(header.size);
@@ -70,7 +70,7 @@ pub(super) fn read(
         });
         let (mut loaded, properties) = made?.finish();
         loaded.format = Format::CompressedPly;
-        loaded.says(header.kind.map(|kind| kind == Kind::Antialiased));
+        loaded.says(header.kind.map(|kind| kind == TrainerKind::Antialiased));
         return Ok((loaded, properties));
     }
     let layout = Layout::of(&header, asked).map_err(format)?;
@@ -93,7 +93,7 @@ pub(super) fn read(
         },
     )?;
     let (mut loaded, mut properties) = assembler.finish();
-    let mut antialiased = header.kind.map(|kind| kind == Kind::Antialiased);
+    let mut antialiased = header.kind.map(|kind| kind == TrainerKind::Antialiased);
     if let Some(at) = properties
         .iter()
         .position(|property| property.name == trained::FILTER)

@@ -4,12 +4,12 @@ use std::io::Read;
 
 use ply_rs::ply::{ElementDef, Encoding};
 
-use super::header::Header;
+use super::header::PlyHeader;
 use super::layout::{Field, fixed_size};
 use crate::counted::counted;
 use crate::scene::SH_0;
 use crate::scene::assemble::{
-    Assembler, OPACITY, ROTATION, SCALES, SH, SLOTS, Stored, unit_quaternion,
+    Assembler, ColumnForm, OPACITY, ROTATION, SCALES, SH, SLOTS, unit_quaternion,
 };
 use crate::scene::load::{Progress, Source};
 
@@ -31,7 +31,7 @@ impl From<String> for Failure {
 }
 
 /// True for a file of this format.
-pub(super) fn is(header: &Header) -> bool {
+pub(super) fn is(header: &PlyHeader) -> bool {
     let vertex = header
         .elements
         .iter()
@@ -143,7 +143,7 @@ impl Ranges {
 /// Reads the payload that begins at the source's position; `left` bytes remain of it there.
 pub(super) fn read(
     source: &mut dyn Source,
-    header: &Header,
+    header: &PlyHeader,
     mut left: u64,
     progress: &mut Progress<'_>,
 ) -> Result<Assembler, Failure> {
@@ -259,7 +259,7 @@ fn assemble(
     let assembler = Assembler::with_room(count, degree, Vec::new());
     let mut assembler = assembler
         .ok_or(Failure::Memory(count))?
-        .stored(Stored::LogScales);
+        .stored(ColumnForm::LogScales);
     for index in 0..vertices.count {
         let [position, rotation, scale, colour] =
             packed.map(|column| vertices.number(index, column) as u32);

@@ -15,14 +15,14 @@ pub(super) const DISCS: &str = "the file holds discs of 2D Gaussian Splatting, w
 
 /// The kinds of Gaussians that comments tell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum TrainerKind {
     Plain,
     Antialiased,
     /// Discs, as 2DGS has them.
     Discs,
 }
 
-impl Kind {
+impl TrainerKind {
     /// The kind by the last comment of a header that says one, if any does: `SplatRenderMode: mip` of Brush, which others write too, or
     /// `antialiased 1` of Postshot.
     pub(super) fn of(lines: &[String]) -> Option<Self> {
@@ -45,12 +45,12 @@ impl Kind {
 /// Refuses Gaussians that are drawn in another way than those of 3DGS. `missing` are the properties that these have and the
 /// file has not.
 pub(super) fn check(
-    kind: Option<Kind>,
+    kind: Option<TrainerKind>,
     vertex: &ElementDef,
     missing: &[&str],
 ) -> Result<(), String> {
     let has = |name: &str| vertex.properties.contains_key(name);
-    if missing == ["scale_2"] || kind == Some(Kind::Discs) {
+    if missing == ["scale_2"] || kind == Some(TrainerKind::Discs) {
         return Err(DISCS.into());
     }
     if has("f_offset_0") && has("f_anchor_feat_0") {
@@ -102,27 +102,28 @@ mod tests {
 
     #[test]
     fn the_last_comment_that_says_a_kind_counts() {
-        let kind =
-            |lines: &[&str]| Kind::of(&lines.iter().map(|l| l.to_string()).collect::<Vec<_>>());
+        let kind = |lines: &[&str]| {
+            TrainerKind::of(&lines.iter().map(|l| l.to_string()).collect::<Vec<_>>())
+        };
         for (lines, expected) in [
             (
                 &["comment SplatRenderMode: mip"][..],
-                Some(Kind::Antialiased),
+                Some(TrainerKind::Antialiased),
             ),
             (
                 &["comment  splatrendermode:  MIP "],
-                Some(Kind::Antialiased),
+                Some(TrainerKind::Antialiased),
             ),
-            (&["comment SplatRenderMode: 2dgs"], Some(Kind::Discs)),
+            (&["comment SplatRenderMode: 2dgs"], Some(TrainerKind::Discs)),
             (&["comment SplatRenderMode: new"], None),
-            (&["comment antialiased 1"], Some(Kind::Antialiased)),
+            (&["comment antialiased 1"], Some(TrainerKind::Antialiased)),
             (
                 &["comment antialiased 1", "comment SplatRenderMode: default"],
-                Some(Kind::Plain),
+                Some(TrainerKind::Plain),
             ),
             (
                 &["comment antialiased 0", "comment SplatRenderMode: mip"],
-                Some(Kind::Antialiased),
+                Some(TrainerKind::Antialiased),
             ),
             (
                 &["property float antialiased 1", "comment SH degree: 3"],

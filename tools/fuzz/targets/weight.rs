@@ -4,7 +4,7 @@
 
 use glam::{DMat4, DQuat, DVec3, Quat, Vec3, Vec4};
 use libfuzzer_sys::fuzz_target;
-use rara::reference::{Footprint, Real, View, cutoff, project, splat};
+use rara::reference::{Footprint, Real, ViewTransform, cutoff, project, splat};
 use rara::{
     Camera, Clip, ClipOp, ExactForm, Gaussians, Miss, Mode, Plane, Projection, Settings,
 };
@@ -69,7 +69,7 @@ fn settings(choice: u8) -> Settings {
 }
 
 fn check<T: Real>(scene: &Gaussians, camera: &Camera, clip: &Clip, settings: &Settings) {
-    let view = View::<T>::new(camera);
+    let view = ViewTransform::<T>::new(camera);
     let Some(mut splat) = project::project(scene, 0, &view, settings) else {
         return;
     };

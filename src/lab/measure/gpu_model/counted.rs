@@ -18,7 +18,7 @@ pub const SIZE: (u32, u32) = (1920, 1080);
 
 /// A frame of a generated scene, drawn by tiles, as it was counted.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct CountedFrame {
+pub struct ModelFrame {
     /// How many Gaussians the scene has.
     pub gaussians: usize,
     /// True when a plane cuts it exactly in half.
@@ -29,7 +29,7 @@ pub struct CountedFrame {
     pub dispatches: Vec<String>,
 }
 
-impl CountedFrame {
+impl ModelFrame {
     /// Its name.
     pub fn name(&self) -> String {
         let millions = self.gaussians as f64 / 1e6;
@@ -100,13 +100,13 @@ impl Kernel {
 ///
 /// # Panics
 /// If the file is not as it is written.
-pub fn frames() -> Vec<CountedFrame> {
-    let mut all: Vec<CountedFrame> = Vec::new();
+pub fn frames() -> Vec<ModelFrame> {
+    let mut all: Vec<ModelFrame> = Vec::new();
     for line in lines(include_str!("frames.txt")) {
         let (what, rest) = line.split_once(' ').expect("a word and more");
         if what == "frame" {
             let (gaussians, how) = rest.split_once(' ').expect(line);
-            all.push(CountedFrame {
+            all.push(ModelFrame {
                 gaussians: gaussians.parse().expect(line),
                 is_cut: how == "cut",
                 numbers: FrameNumbers::default(),

@@ -10,7 +10,7 @@ mod numbers;
 
 pub use costs::{COSTS, Cost};
 pub use counted::{
-    CountedFrame, FRAMES_FILE, KERNELS_FILE, Kernel, SIZE, camera, clip, frames, kernels, scene,
+    FRAMES_FILE, KERNELS_FILE, Kernel, ModelFrame, SIZE, camera, clip, frames, kernels, scene,
 };
 pub use numbers::FrameNumbers;
 
@@ -121,7 +121,7 @@ pub fn named(device: &str) -> Option<&'static Gpu> {
 ///
 /// # Panics
 /// If the frame has a pass without cost or kernel, which a test excludes for those of [`frames`].
-pub fn predict(gpu: &Gpu, frame: &CountedFrame) -> Vec<PassPrediction> {
+pub fn predict(gpu: &Gpu, frame: &ModelFrame) -> Vec<PassPrediction> {
     let kernels = kernels();
     let mut all: Vec<PassPrediction> = Vec::new();
     let mut stage = "";

@@ -5,7 +5,7 @@ fn every_frame_is_predicted_and_more_gaussians_take_longer() {
     let frames = frames();
     assert!(frames.len() >= 4);
     for gpu in &GPUS {
-        let total = |frame: &CountedFrame| predict(gpu, frame).iter().map(|p| p.ms).sum::<f64>();
+        let total = |frame: &ModelFrame| predict(gpu, frame).iter().map(|p| p.ms).sum::<f64>();
         for kind in [false, true] {
             let mut of_kind = frames.iter().filter(|frame| frame.is_cut == kind);
             let (small, large) = (of_kind.next().unwrap(), of_kind.next().unwrap());

@@ -13,13 +13,13 @@ pub(super) struct Accessor {
     bytes: Vec<u8>,
     /// Bytes from one element to the next, and of one part.
     stride: usize,
-    kind: Kind,
+    kind: ComponentType,
     parts: usize,
     normalized: bool,
 }
 
 #[derive(Clone, Copy)]
-enum Kind {
+enum ComponentType {
     I8,
     U8,
     I16,
@@ -28,7 +28,7 @@ enum Kind {
     F32,
 }
 
-impl Kind {
+impl ComponentType {
     fn size(self) -> usize {
         match self {
             Self::I8 | Self::U8 => 1,
@@ -80,12 +80,12 @@ impl Accessor {
             )));
         }
         let kind = match index(accessor, "componentType") {
-            Some(5120) => Kind::I8,
-            Some(5121) => Kind::U8,
-            Some(5122) => Kind::I16,
-            Some(5123) => Kind::U16,
-            Some(5125) => Kind::U32,
-            Some(5126) => Kind::F32,
+            Some(5120) => ComponentType::I8,
+            Some(5121) => ComponentType::U8,
+            Some(5122) => ComponentType::I16,
+            Some(5123) => ComponentType::U16,
+            Some(5125) => ComponentType::U32,
+            Some(5126) => ComponentType::F32,
             _ => return Err(wrong("is of no known type of numbers")),
         };
         let found = match accessor.get("type").and_then(Value::as_str) {
@@ -130,7 +130,7 @@ impl Accessor {
             kind,
             parts: found,
             // Of floats it means nothing.
-            normalized: !matches!(kind, Kind::F32)
+            normalized: !matches!(kind, ComponentType::F32)
                 && accessor.get("normalized").and_then(Value::as_bool) == Some(true),
         })
     }

@@ -13,10 +13,10 @@ use serde_json::Value;
 
 use self::accessor::Accessor;
 use self::buffers::Buffers;
-use super::super::assemble::{OPACITY, ROTATION, SCALES, SH, SLOTS, Stored};
+use super::super::assemble::{ColumnForm, OPACITY, ROTATION, SCALES, SH, SLOTS};
 use super::super::{SH_0, sh_coefficients};
 use super::bytes::Bytes;
-use super::{Failure, Made, json, room, spz};
+use super::{Failure, FormatOutput, json, room, spz};
 use crate::counted::counted;
 use crate::error::shortened;
 use crate::placement::Placement;
@@ -37,7 +37,7 @@ pub(super) fn turn() -> DQuat {
 }
 
 /// Reads a `.glb`.
-pub(super) fn read_binary(bytes: &[u8], folder: Option<&Path>) -> Result<Made, Failure> {
+pub(super) fn read_binary(bytes: &[u8], folder: Option<&Path>) -> Result<FormatOutput, Failure> {
     let what = "the .glb";
     let mut bytes = Bytes(bytes);
     bytes.take(4, what)?;
@@ -70,9 +70,9 @@ pub(super) fn read_document(
     document: &Value,
     binary: Option<&[u8]>,
     folder: Option<&Path>,
-) -> Result<Made, Failure> {
+) -> Result<FormatOutput, Failure> {
     let mut buffers = Buffers::new(document, binary, folder);
-    let mut whole = Made::default();
+    let mut whole = FormatOutput::default();
     let (mut found, mut others) = (0_u64, 0_u64);
     let mut meshes = BTreeMap::new();
     for (number, placement) in nodes::meshes(document)? {
@@ -157,7 +157,7 @@ fn read_primitive(
     buffers: &mut Buffers<'_>,
     primitive: &Value,
     extension: &Value,
-) -> Result<Made, Failure> {
+) -> Result<FormatOutput, Failure> {
     let inner = [extension.get("extensions"), primitive.get("extensions")];
     let inner = inner
         .into_iter()
@@ -255,7 +255,7 @@ fn read_primitive(
     if opacities.is_none() && colours.is_none() {
         return Err(Failure::Format(lacks(&own("OPACITY"))));
     }
-    let mut made = room(count, degree, Stored::Plain)?;
+    let mut made = room(count, degree, ColumnForm::Plain)?;
     for index in 0..count {
         let mut row = [0.0; SLOTS];
         for axis in 0..3 {

@@ -12,8 +12,8 @@ use serde_json::Value;
 use self::archive::Archive;
 use self::meta::{Meta, Range};
 use self::picture::Picture;
-use super::super::assemble::{OPACITY, ROTATION, SCALES, SH, SLOTS, Stored, unit_quaternion};
-use super::{Failure, Made, beside, json, room};
+use super::super::assemble::{ColumnForm, OPACITY, ROTATION, SCALES, SH, SLOTS, unit_quaternion};
+use super::{Failure, FormatOutput, beside, json, room};
 use crate::counted::counted;
 
 pub(super) use self::streamed::read as read_streamed;
@@ -31,19 +31,25 @@ const MOST_OF_BYTE: u64 = 16;
 const FEW: u64 = 1 << 16;
 
 /// Reads an archive.
-pub(super) fn read_archive(bytes: &[u8]) -> Result<Made, Failure> {
+pub(super) fn read_archive(bytes: &[u8]) -> Result<FormatOutput, Failure> {
     let archive = Archive::open(bytes)?;
     let document = json(&archive.get("meta.json")?)?;
     read(&document, &|name| archive.get(name))
 }
 
 /// Reads a `meta.json`, whose pictures are files beside it.
-pub(super) fn read_folder(document: &Value, folder: Option<&Path>) -> Result<Made, Failure> {
+pub(super) fn read_folder(
+    document: &Value,
+    folder: Option<&Path>,
+) -> Result<FormatOutput, Failure> {
     read(document, &|name| beside(name, folder))
 }
 
 /// Reads what a `meta.json` describes; `get` gives the file of a name.
-fn read(document: &Value, get: &dyn Fn(&str) -> Result<Vec<u8>, Failure>) -> Result<Made, Failure> {
+fn read(
+    document: &Value,
+    get: &dyn Fn(&str) -> Result<Vec<u8>, Failure>,
+) -> Result<FormatOutput, Failure> {
     let meta = Meta::of(document)?;
     let count = meta.count;
     let names = [
@@ -111,9 +117,9 @@ fn read(document: &Value, get: &dyn Fn(&str) -> Result<Vec<u8>, Failure>) -> Res
     };
     let degree = harmonics.as_ref().map_or(0, |(_, _, degree, ..)| *degree);
     let stored = if meta.is_first {
-        Stored::Logarithms
+        ColumnForm::Logarithms
     } else {
-        Stored::LogScales
+        ColumnForm::LogScales
     };
     let mut made = room(count, degree, stored)?;
     for index in 0..count as usize {
@@ -160,7 +166,7 @@ fn read(document: &Value, get: &dyn Fn(&str) -> Result<Vec<u8>, Failure>) -> Res
         }
         made.push(&row);
     }
-    let mut made = Made::from(made);
+    let mut made = FormatOutput::from(made);
     made.gaussians.set_antialiased(meta.is_antialiased);
     Ok(made)
 }

@@ -5,10 +5,13 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
-use super::super::{Failure, Made, beside, json};
+use super::super::{Failure, FormatOutput, beside, json};
 
 /// Reads the finest level that each place has, and the surroundings.
-pub(in super::super) fn read(document: &Value, folder: Option<&Path>) -> Result<Made, Failure> {
+pub(in super::super) fn read(
+    document: &Value,
+    folder: Option<&Path>,
+) -> Result<FormatOutput, Failure> {
     let names = document.get("filenames").and_then(Value::as_array);
     let names = names.map(Vec::as_slice).unwrap_or_default();
     let mut pieces: BTreeMap<usize, Vec<[u64; 2]>> = BTreeMap::new();
@@ -39,7 +42,7 @@ pub(in super::super) fn read(document: &Value, folder: Option<&Path>) -> Result<
             }
         }
     }
-    let mut whole = Made::default();
+    let mut whole = FormatOutput::default();
     let mut read = HashSet::new();
     for (file, mut ranges) in pieces {
         let mut piece = load(&names[file], folder, &mut read)?;
@@ -80,7 +83,11 @@ pub(in super::super) fn read(document: &Value, folder: Option<&Path>) -> Result<
 }
 
 /// A folder of SOG, by the name of its `meta.json`, which may not have been read before.
-fn load(name: &Value, folder: Option<&Path>, read: &mut HashSet<PathBuf>) -> Result<Made, Failure> {
+fn load(
+    name: &Value,
+    folder: Option<&Path>,
+    read: &mut HashSet<PathBuf>,
+) -> Result<FormatOutput, Failure> {
     let name = name.as_str().ok_or_else(|| {
         "a file name in lod-meta.json is no text; export the scene again".to_owned()
     })?;

@@ -84,7 +84,7 @@ fn module(shaders: &[Source]) -> String {
         "/// The declarations of its shaders.\n#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]\npub(crate) struct Program;\n\
          impl super::Interface for Program {{\n\
          const NAME: &'static str = {name:?};\n\
-         type Buffers<'a> = Buffers<'a>;\ntype Params = {};\ntype Constants = {};\n}}\n{}}}",
+         type Buffers<B: Copy> = Buffers<B>;\ntype Params = {};\ntype Constants = {};\n}}\n{}}}",
         if whole.params.is_empty() { "()" } else { "Params" },
         if whole.constants.is_empty() { "()" } else { "Constants" },
         match shaders {
@@ -157,11 +157,11 @@ fn merge<T: Clone + PartialEq>(
 fn buffers(buffers: &[Buffer]) -> String {
     let each = |line: &dyn Fn(&Buffer) -> String| buffers.iter().map(line).collect::<String>();
     format!(
-        "/// Its buffers.\n#[derive(Debug, Clone, Copy)]\npub(crate) struct Buffers<'a> {{\n{}}}\n\
-         impl<'a> super::BufferSet<'a> for Buffers<'a> {{\n\
+        "/// Its buffers.\n#[derive(Debug, Clone, Copy)]\npub(crate) struct Buffers<B> {{\n{}}}\n\
+         impl<B: Copy> super::BufferSet<B> for Buffers<B> {{\n\
          type Program = Program;\n\
-         fn list(self) -> super::BufferList<'a> {{ super::BufferList::from_slice(&[{}]) }}\n}}\n",
-        each(&|b| format!("pub(crate) {}: &'a super::Buffer,\n", b.name)),
+         fn list(self) -> super::BufferList<B> {{ super::BufferList::from_slice(&[{}]) }}\n}}\n",
+        each(&|b| format!("pub(crate) {}: B,\n", b.name)),
         each(&|b| format!("self.{}, ", b.name)),
     )
 }

@@ -1,12 +1,25 @@
-//! Lists the blocks whose Gaussians differ, for one stage.
+//! Lists of blocks: lists those whose Gaussians differ, for one stage, and counts the workgroups that look at blocks.
 
-use crate::gpu::{Buffer, Recorder};
-use crate::passes::blocks::groups_of_list;
-use crate::passes::buffers::buffers;
+use crate::gpu::DeviceShape;
+use crate::limits;
+use crate::passes::plan::Plan;
+use crate::passes::recording::{Groups, Recording};
 use crate::passes::shaders::block_list;
-use crate::passes::stage::Frame;
+use crate::passes::shared;
+use crate::passes::storage::{Storage, buffers, memory};
 
-pub(super) use block_list::Program;
+memory! {
+    /// The numbers of the blocks that the next stage looks at.
+    block_list: |plan| 4 * plan.blocks();
+    /// The blocks' shortlists of surfaces; empty where no region has many.
+    shortlists: |plan| match plan.is_shortlisted() {
+        true => 4 * u64::from(limits::SHORTLIST_WORDS) * plan.blocks(),
+        false => 0,
+    };
+}
+
+/// Bytes of the two masks of a block, a bit a Gaussian in each.
+pub(super) const MASK_BYTES: u64 = 2 * limits::BLOCK_SIZE as u64 / 8;
 
 /// The stage that will look at the blocks of the list.
 #[derive(Debug, Clone, Copy)]
@@ -17,18 +30,33 @@ pub(crate) enum ListFor {
 
 /// Lists those whose two low bits in `sides` say that they differ.
 pub(crate) fn record(
-    frame: &Frame<'_>,
-    recorder: &mut Recorder<'_>,
-    sides: &Buffer,
+    recording: &mut Recording<'_, '_>,
+    sides: &'static Storage,
     list_for: ListFor,
 ) {
-    let b = frame.buffers;
     let buffers = buffers!(block_list {
-        b => [frame, block_list, counts];
+        MEMORY => [block_list],
+        shared::MEMORY => [frame, counts];
         sides,
     });
     let params = block_list::Params {
         stage: list_for as u32,
     };
-    frame.dispatch(recorder, buffers, params, groups_of_list(frame.plan));
+    recording.dispatch(buffers, params, groups_of_list(recording.plan));
+}
+
+/// The workgroups of a list of blocks: a single one on CPU drivers, whose invocations have many blocks each, and an invocation
+/// a block on GPUs.
+pub(crate) fn groups_of_list(plan: &Plan) -> Groups {
+    let blocks = plan.data.scene.block_count;
+    Groups::Count(match plan.way.shape {
+        DeviceShape::Cpu => 1,
+        DeviceShape::Gpu { .. } => blocks.div_ceil(limits::BLOCK_SIZE).max(1),
+    })
+}
+
+/// An invocation a block.
+pub(crate) fn groups_of_blocks(plan: &Plan) -> Groups {
+    let blocks = plan.data.scene.block_count;
+    Groups::Count(blocks.div_ceil(limits::BLOCK_GROUP_SIZE))
 }

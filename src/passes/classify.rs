@@ -1,24 +1,29 @@
 //! Stage `classify`, one invocation a Gaussian of the blocks that are not settled as a whole, culls by footprint, opacity
 //! and size, and finds the side of what is in view.
 
-use crate::gpu::Recorder;
-use crate::passes::buffers::{buffers, indirect};
+use crate::passes::recording::{Recording, counted};
 use crate::passes::shaders::classify;
-use crate::passes::stage::{Frame, Stage, key};
-use crate::types::FrameCounts;
+use crate::passes::shared::{self, SCENE};
+use crate::passes::stage::Stage;
+use crate::passes::storage::{buffers, memory};
+use crate::passes::{block_list, clip};
 
-pub(crate) const STAGE: Stage = Stage::when_finding_view(
-    "classify",
-    |plan, need| need(key::<classify::Program>(plan)),
-    record,
-);
+pub(crate) static STAGE: Stage = Stage::when_finding_view("classify", &[STORAGES], record);
 
-fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
-    let b = frame.buffers;
+memory! {
+    /// Which Gaussians are kept, and which of them are cut.
+    masks: |plan| block_list::MASK_BYTES * plan.blocks();
+    /// How many these are in each block.
+    block_counts: |plan| 16 * plan.blocks();
+}
+
+fn record(recording: &mut Recording<'_, '_>) {
     let buffers = buffers!(classify {
-        b => [frame, surfaces, block_list, counts, clip_sides, clip_masks, masks, block_counts, shortlists],
-        frame.scene => [gaussians],
+        shared::MEMORY => [frame, surfaces, counts],
+        SCENE => [gaussians],
+        block_list::MEMORY => [block_list, shortlists],
+        clip::MEMORY => [clip_sides, clip_masks],
+        MEMORY => [masks, block_counts],
     });
-    let groups = indirect!(b.counts, FrameCounts, classify_groups);
-    frame.dispatch(recorder, buffers, (), groups);
+    recording.dispatch(buffers, (), counted!(classify_groups));
 }

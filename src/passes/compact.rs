@@ -1,31 +1,39 @@
 //! Stage `compact` lists the survivors and the cutoff Gaussians in the order of the scene, and writes the counts and the
 //! indirect commands of all later stages. No place in a list depends on the order of atomics.
 
-use crate::gpu::Recorder;
-use crate::passes::blocks::groups_of_list;
-use crate::passes::buffers::{buffers, indirect};
+use crate::passes::block_list::{self, groups_of_list};
+use crate::passes::recording::{Recording, counted};
 use crate::passes::shaders::{compact, compact_scan};
-use crate::passes::stage::{Frame, Stage, key};
-use crate::types::FrameCounts;
+use crate::passes::stage::Stage;
+use crate::passes::storage::{buffers, memory};
+use crate::passes::{blocks, classify, shared};
 
-pub(crate) const STAGE: Stage = Stage::when_finding_view(
-    "compact",
-    |plan, need| {
-        need(key::<compact_scan::Program>(plan));
-        need(key::<compact::Program>(plan));
-    },
-    record,
-);
+pub(crate) static STAGE: Stage = Stage::when_finding_view("compact", &[STORAGES], record);
 
-fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
-    let b = frame.buffers;
+memory! {
+    /// Where the survivors and the cut ones of each block go.
+    block_offsets: |plan| 8 * plan.blocks();
+    /// The Gaussians that are drawn, and their places among those that are cut.
+    survivors: |plan| 8 * plan.gaussians();
+    /// The Gaussians that are cut.
+    cutoffs: |plan| 4 * plan.gaussians();
+}
+
+fn record(recording: &mut Recording<'_, '_>) {
     let buffers = buffers!(compact_scan {
-        b => [frame, block_sides, block_counts, block_offsets, block_list, counts],
+        shared::MEMORY => [frame, counts],
+        blocks::MEMORY => [block_sides],
+        classify::MEMORY => [block_counts],
+        block_list::MEMORY => [block_list],
+        MEMORY => [block_offsets],
     });
-    frame.dispatch(recorder, buffers, (), groups_of_list(frame.plan));
+    recording.dispatch(buffers, (), groups_of_list(recording.plan));
     let buffers = buffers!(compact {
-        b => [frame, block_list, counts, block_sides, masks, block_offsets, survivors, cutoffs],
+        shared::MEMORY => [frame, counts],
+        blocks::MEMORY => [block_sides],
+        classify::MEMORY => [masks],
+        block_list::MEMORY => [block_list],
+        MEMORY => [block_offsets, survivors, cutoffs],
     });
-    let groups = indirect!(b.counts, FrameCounts, compact_groups);
-    frame.dispatch(recorder, buffers, (), groups);
+    recording.dispatch(buffers, (), counted!(compact_groups));
 }

@@ -1,33 +1,44 @@
 //! Stage `cutoff`, one invocation a cutoff Gaussian, writes the cutoff record, from which the fragment stage weights it.
 
-use crate::gpu::Recorder;
-use crate::passes::buffers::{buffers, indirect};
+use crate::passes::recording::{Recording, counted};
 use crate::passes::shaders::cutoff;
-use crate::passes::stage::{Frame, Stage, key};
-use crate::types::FrameCounts;
+use crate::passes::shared::{self, SCENE};
+use crate::passes::stage::Stage;
+use crate::passes::storage::{buffers, memory};
+use crate::passes::{block_list, compact};
 
 /// The stage in a frame that finds its view anew.
-pub(crate) const STAGE: Stage = Stage {
+pub(crate) static STAGE: Stage = Stage {
     name: "cutoff",
     needed: |plan| plan.finds_view() && plan.view_is_cut(),
     missed: |plan| !plan.reclips(),
-    pipelines: |plan, need| need(key::<cutoff::Program>(plan)),
+    memory: &[STORAGES],
     record,
 };
 
 /// The same in a reclipped frame, after stage `reclip`.
-pub(crate) const STAGE_OF_RECLIP: Stage = Stage {
+pub(crate) static STAGE_OF_RECLIP: Stage = Stage {
+    name: "cutoff",
     needed: |plan| plan.reclips() && plan.cuts(),
     missed: |plan| plan.reclips(),
-    ..STAGE
+    memory: &[],
+    record,
 };
 
-fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
-    let b = frame.buffers;
+memory! {
+    cut_records: |plan| match plan.cuts() {
+        true => 16 * u64::from(plan.data.weight.cut_stride) * plan.gaussians(),
+        false => 0,
+    };
+}
+
+fn record(recording: &mut Recording<'_, '_>) {
     let buffers = buffers!(cutoff {
-        b => [frame, surfaces, cutoffs, counts, cut_records, shortlists],
-        frame.scene => [gaussians],
+        shared::MEMORY => [frame, surfaces, counts],
+        SCENE => [gaussians],
+        block_list::MEMORY => [shortlists],
+        compact::MEMORY => [cutoffs],
+        MEMORY => [cut_records],
     });
-    let groups = indirect!(b.counts, FrameCounts, cutoff_groups);
-    frame.dispatch(recorder, buffers, (), groups);
+    recording.dispatch(buffers, (), counted!(cutoff_groups));
 }

@@ -4,44 +4,59 @@
 use std::mem::offset_of;
 
 use crate::depth::DepthMap;
-use crate::gpu::{Attachments, Drawer, Recorder};
-use crate::passes::buffers::{Buffers, DepthBuffers, buffers, indirect};
+use crate::gpu::{Attachments, Drawer};
+use crate::passes::buffers::Buffers;
 use crate::passes::pipelines::{Draw, Pipelines};
 use crate::passes::plan::Plan;
+use crate::passes::recording::{Recording, counted};
 use crate::passes::shaders::{depth, splat_depth};
-use crate::passes::stage::{Frame, Stage, key};
+use crate::passes::shared::{self, SCENE};
+use crate::passes::stage::Stage;
+use crate::passes::storage::{buffers, memory};
 use crate::passes::weight::Weight;
 use crate::passes::work::Work;
-use crate::types::FrameCounts;
+use crate::passes::{block_list, compact, cutoff, project, sort};
+use crate::types::{FrameCounts, SplatDepth};
 
 /// The splats' depths.
-pub(crate) const STAGE: Stage = Stage {
+pub(crate) static STAGE: Stage = Stage {
     name: "depth",
     needed: |plan| plan.way.expects_depth && plan.work != Work::Draw,
     missed: |_| false,
-    pipelines: |plan, need| need(key::<depth::Program>(plan)),
+    memory: &[STORAGES],
     record,
 };
 
-fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
-    let (b, d) = (frame.buffers, frame.depths());
+memory! {
+    depths: |plan| expected(plan, plan.gaussians() * size_of::<SplatDepth>() as u64);
+    /// The indirect draw of a quad a survivor.
+    depth_draw: |plan| expected(plan, 16);
+}
+
+/// So many bytes where depths are expected.
+fn expected(plan: &Plan, bytes: u64) -> u64 {
+    if plan.way.expects_depth { bytes } else { 0 }
+}
+
+fn record(recording: &mut Recording<'_, '_>) {
     let buffers = buffers!(depth {
-        b => [frame, surfaces, survivors, counts, shortlists],
-        frame.scene => [gaussians],
-        d => [depths],
+        shared::MEMORY => [frame, surfaces, counts],
+        SCENE => [gaussians],
+        compact::MEMORY => [survivors],
+        block_list::MEMORY => [shortlists],
+        MEMORY => [depths],
     });
-    let groups = indirect!(b.counts, FrameCounts, project_groups);
-    frame.dispatch(recorder, buffers, (), groups);
+    recording.dispatch(buffers, (), counted!(project_groups));
     // Each survivor is drawn as a quad, also where tiles draw the colours.
     let quad = [4_u32, 0, 0, 0];
-    recorder.update(&d.draw, 0, bytemuck::bytes_of(&quad));
+    recording.update(&MEMORY.depth_draw, bytemuck::bytes_of(&quad));
     let survivors = offset_of!(FrameCounts, mesh_groups) + 3 * size_of::<u32>();
     let region = ash::vk::BufferCopy {
         src_offset: survivors as u64,
         dst_offset: 4,
         size: 4,
     };
-    recorder.copy(&b.counts, &d.draw, &[region]);
+    recording.copy(&shared::MEMORY.counts, &MEMORY.depth_draw, region);
 }
 
 /// The draw of the depths.
@@ -67,15 +82,17 @@ pub(crate) fn draw(plan: &Plan, attachments: Attachments) -> Draw<splat_depth::P
 pub(crate) fn record_draw(
     drawer: &mut Drawer<'_>,
     pipelines: &Pipelines,
-    (plan, b, d): (&Plan, &Buffers, &DepthBuffers),
+    (plan, b): (&Plan, &Buffers),
     attachments: Attachments,
     origin: [f32; 2],
     (map, unit): (Option<DepthMap>, f64),
 ) {
     let buffers = buffers!(splat_depth {
-        b => [frame, counts, splats, quads, cut_records],
-        d => [depths];
-        order: &b.order[plan.sorted()],
+        shared::MEMORY => [frame, counts],
+        project::MEMORY => [splats, quads],
+        cutoff::MEMORY => [cut_records],
+        MEMORY => [depths];
+        order: sort::order(plan),
     });
     let [depth_offset, depth_scale] = map.map_or([0.0; 2], |map| map.factors());
     let params = splat_depth::Params {
@@ -87,5 +104,9 @@ pub(crate) fn record_draw(
         cut_stride: plan.data.weight.cut_stride,
         unit: unit as f32,
     };
-    draw(plan, attachments).draw(pipelines, drawer, buffers, params, (&d.draw, 0));
+    let (buffers, args) = (
+        (buffers, |storage| b.get(storage)),
+        (b.get(&MEMORY.depth_draw), 0),
+    );
+    draw(plan, attachments).draw(pipelines, drawer, buffers, params, args);
 }

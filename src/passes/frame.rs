@@ -1,19 +1,26 @@
 //! The frame on one page: its stages in order, from its constants to the draw.
 
+use std::sync::LazyLock;
+
+use ash::vk;
 use smallvec::SmallVec;
 
 use crate::gpu::{Buffer, Recorder};
 use crate::passes::pipelines::PipelineKey;
 use crate::passes::plan::Plan;
-use crate::passes::stage::{Frame, Stage, Targets};
+use crate::passes::recording::{Recording, Resources};
+use crate::passes::sizes::Sizes;
+use crate::passes::stage::{Stage, Targets};
+use crate::passes::storage::Storage;
 use crate::passes::work::Work;
 use crate::passes::{
-    bin, blocks, classify, clip, compact, cutoff, depth, project, reclip, sort, splat, tiles,
+    bin, blocks, classify, clip, compact, cutoff, depth, project, reclip, shared, sort, splat,
+    tiles,
 };
 
 /// All stages in the order in which a frame has them. Nothing waits or is read back in between; each stage's work follows
 /// from what the earlier ones left on the device.
-pub(crate) const STAGES: [&Stage; 13] = [
+pub(crate) static STAGES: [&Stage; 13] = [
     // Finds on which side of the clip each block of Gaussians lies, and each Gaussian of the blocks that it cuts.
     &clip::STAGE,
     // Finds which blocks are in view.
@@ -48,54 +55,95 @@ pub(crate) const DRAW: &str = "splat";
 /// Bytes of the constants of a frame with few layers, for which recording takes no memory.
 const FEW_LAYERS: usize = 4096;
 
-/// Records everything up to the draw. `readback` gets a copy of the counts for the host.
-pub(crate) fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>, readback: &Buffer) {
-    let (plan, b) = (frame.plan, frame.buffers);
+/// The buffers of all stages.
+static MEMORY: LazyLock<Vec<&'static Storage>> = LazyLock::new(|| {
+    let of_stages = STAGES.iter().flat_map(|stage| stage.memory);
+    let all: Vec<_> = [shared::STORAGES]
+        .iter()
+        .chain(of_stages)
+        .flat_map(|storages| storages.iter().copied())
+        .collect();
+    Storage::number(&all);
+    all
+});
+
+/// Records everything up to the draw. `copied` is the rectangle of the host's depth under the picture; `readback` gets a copy
+/// of the counts for the host.
+pub(crate) fn record(
+    plan: &Plan,
+    recorder: &mut Recorder<'_>,
+    resources: Resources<'_>,
+    copied: vk::Rect2D,
+    readback: &Buffer,
+) {
+    let b = resources.buffers;
+    let shared = &shared::MEMORY;
+    let [frame, surfaces, counts] =
+        [&shared.frame, &shared.surfaces, &shared.counts].map(|s| b.get(s));
     if plan.work != Work::Draw {
         recorder.label("frame", |r| {
-            let (layers, surfaces) = (plan.layers.layers(), plan.layers.surfaces());
+            let (layers, of_layers) = (plan.layers.layers(), plan.layers.surfaces());
             // By one command, since two into one buffer would wait for each other.
             let mut constants = SmallVec::<[u8; FEW_LAYERS]>::from(bytemuck::bytes_of(&plan.data));
             constants.extend_from_slice(bytemuck::cast_slice(layers));
-            r.update(&b.frame, 0, &constants);
-            r.update(&b.surfaces, 0, bytemuck::cast_slice(surfaces));
+            r.update(frame, 0, &constants);
+            r.update(surfaces, 0, bytemuck::cast_slice(of_layers));
         });
     }
-    for stage in STAGES.iter().filter(|stage| (stage.needed)(plan)) {
-        recorder.pass(stage.name, |r| (stage.record)(frame, r));
-    }
-    if let Some(t) = b.tiles.as_ref().filter(|_| plan.is_tiled()) {
-        if plan.is_drawn {
-            recorder.ready_to_draw(&[&t.picture.pixels, &t.picture.begins]);
-        } else {
-            recorder.ready_for_host(&[&t.picture.pixels, &t.picture.begins]);
+    record_stages(&mut Recording::new(plan, recorder, resources, copied));
+    if plan.is_tiled() {
+        let picture =
+            [&tiles::MEMORY.tile_picture, &bin::lists::MEMORY.tile_begins].map(|s| b.get(s));
+        match plan.is_drawn {
+            true => recorder.ready_to_draw(&picture),
+            false => recorder.ready_for_host(&picture),
         }
     }
-    if let Some(d) = b.depth.as_ref().filter(|_| plan.way.expects_depth) {
-        recorder.ready_to_draw(&[&d.depths, &d.draw]);
+    if plan.way.expects_depth {
+        let depths = [&depth::MEMORY.depths, &depth::MEMORY.depth_draw].map(|s| b.get(s));
+        recorder.ready_to_draw(&depths);
     }
     recorder.label("counts", |r| {
-        let all = ash::vk::BufferCopy::default().size(b.counts.size());
-        r.copy(&b.counts, readback, &[all]);
+        let all = vk::BufferCopy::default().size(counts.size());
+        r.copy(counts, readback, &[all]);
         r.ready_for_host(&[readback]);
     });
-    let order = &b.order[plan.sorted()];
-    recorder.ready_to_draw(&[
-        &b.frame,
-        &b.counts,
-        &b.splats,
-        &b.quads,
-        order,
-        &b.cut_records,
-    ]);
+    let splats = &project::MEMORY;
+    let drawn = [
+        &splats.splats,
+        &splats.quads,
+        sort::order(plan),
+        &cutoff::MEMORY.cut_records,
+    ];
+    let [splats, quads, order, cut_records] = drawn.map(|s| b.get(s));
+    recorder.ready_to_draw(&[frame, counts, splats, quads, order, cut_records]);
+}
+
+fn record_stages(recording: &mut Recording<'_, '_>) {
+    let plan = recording.plan;
+    for stage in STAGES.iter().filter(|stage| (stage.needed)(plan)) {
+        recording.stage(stage.name, stage.record);
+    }
+}
+
+impl Sizes {
+    /// True when a picture's lists and pixels have so much room too.
+    pub(crate) fn hold_tiles_of(&self, need: &Self) -> bool {
+        let picture = [&bin::lists::MEMORY.tile_begins, &tiles::MEMORY.tile_picture];
+        picture.iter().all(|s| self.bytes(s) >= need.bytes(s))
+    }
 }
 
 impl Plan {
+    /// The bytes of all buffers of the frame.
+    pub(crate) fn sizes(&self) -> Sizes {
+        Sizes::new(&MEMORY, self)
+    }
+
     /// The pipelines of the whole frame.
     pub(crate) fn pipelines(&self, targets: Targets, need: &mut dyn FnMut(PipelineKey)) {
-        for stage in STAGES.iter().filter(|stage| (stage.needed)(self)) {
-            (stage.pipelines)(self, need);
-        }
+        let mut recording = Recording::dry(self, need);
+        record_stages(&mut recording);
         if self.is_drawn {
             need(splat::draw(self, targets.colour).key());
         }

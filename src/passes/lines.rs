@@ -87,6 +87,7 @@ impl Lines {
                 pixel: [2.0 / width as f32, 2.0 / height as f32],
             };
             let buffers = lines::Buffers { lines: buffer };
+            let buffers = (buffers, |buffer| buffer);
             draw(attachments).draw(&self.pipelines, drawer, buffers, params, (buffer, 0));
         }
     }

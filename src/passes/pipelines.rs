@@ -14,7 +14,9 @@ use crate::gpu::{
     GraphicsPipeline, Groups, Recorder, Shader,
 };
 use crate::passes::plan::Plan;
-use crate::passes::shaders::{BufferSet, Compute, ConstantList, ConstantSet, Interface};
+use crate::passes::shaders::{
+    BufferList, BufferSet, Compute, ConstantList, ConstantSet, Interface,
+};
 
 /// A pipeline's identity: its shaders, their constants, and what it draws into.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
@@ -92,21 +94,22 @@ impl<P: Interface> Kernel<P> {
     }
 
     /// Its identity.
-    pub(crate) fn key(self) -> PipelineKey {
-        self.key
+    pub(super) fn key(&self) -> PipelineKey {
+        self.key.clone()
     }
 
-    /// Records a dispatch.
-    pub(crate) fn dispatch(
+    /// Records a dispatch; the function finds the buffers.
+    pub(super) fn dispatch<'b, B: Copy>(
         &self,
         pipelines: &Pipelines,
         recorder: &mut Recorder<'_>,
-        buffers: P::Buffers<'_>,
+        (buffers, buffer): (P::Buffers<B>, impl Fn(B) -> &'b Buffer),
         params: P::Params,
         groups: Groups<'_>,
     ) {
         let pipeline = &pipelines.compute[&self.key];
-        recorder.dispatch(pipeline, &buffers.list(), words(&params), groups);
+        let buffers: BufferList<_> = buffers.list().into_iter().map(buffer).collect();
+        recorder.dispatch(pipeline, &buffers, words(&params), groups);
     }
 }
 
@@ -137,21 +140,23 @@ impl<P: Interface> Draw<P> {
     }
 
     /// Its identity.
-    pub(crate) fn key(self) -> PipelineKey {
-        self.key
+    pub(super) fn key(&self) -> PipelineKey {
+        self.key.clone()
     }
 
-    /// Records a draw whose indirect command, of meshes or of vertices, is at `offset` in `args`.
-    pub(crate) fn draw(
+    /// Records a draw whose indirect command, of meshes or of vertices, is at `offset` in `args`; the function finds the
+    /// buffers.
+    pub(super) fn draw<'b, B: Copy>(
         &self,
         pipelines: &Pipelines,
         drawer: &mut Drawer<'_>,
-        buffers: P::Buffers<'_>,
+        (buffers, buffer): (P::Buffers<B>, impl Fn(B) -> &'b Buffer),
         params: P::Params,
         (args, offset): (&Buffer, u64),
     ) {
         let pipeline = &pipelines.graphics[&self.key];
-        let (params, buffers) = (words(&params), buffers.list());
+        let buffers: BufferList<_> = buffers.list().into_iter().map(buffer).collect();
+        let params = words(&params);
         if self.key.shader.0.stage == vk::ShaderStageFlags::MESH_EXT {
             drawer.draw_mesh_tasks_indirect(pipeline, &buffers, params, args, offset);
         } else {

@@ -4,17 +4,17 @@ use crate::camera::Camera;
 use crate::clip::{Clip, ClipOp};
 use crate::counted::counted;
 use crate::error::{Error, Result};
-use crate::gpu::DeviceShape;
+use crate::gpu::{DeviceShape, Location};
 use crate::limits;
 use crate::passes::depth_keys::DepthKeys;
+use crate::passes::laws::Laws;
 use crate::passes::layers::{self, Layers};
 use crate::passes::occluders::Occluders;
 use crate::passes::region::region_data;
 use crate::passes::scene_layer::SceneLayer;
-use crate::passes::sort;
-use crate::passes::tiles::{TilePixels, TileWork};
+use crate::passes::tile_picture::TilePixels;
+use crate::passes::tile_work::TileWork;
 use crate::passes::view::view_data;
-use crate::passes::weight::Laws;
 use crate::passes::work::Work;
 use crate::precision::ShFormat;
 use crate::settings::{ExactForm, Raster, Settings, Show};
@@ -35,6 +35,8 @@ pub(crate) struct Plan {
     pub(crate) is_drawn: bool,
     /// The depth that hides splats of tiles.
     pub(crate) occluders: Option<Occluders>,
+    /// True when the Gaussians lie in another order than that of their numbers, by which those of one depth are sorted.
+    pub(crate) reordered: bool,
     /// The frame's constants.
     pub(crate) data: FrameData,
     /// The constants of its layers.
@@ -72,6 +74,8 @@ pub(crate) struct SceneFacts<'a> {
     pub(crate) layers: &'a [SceneLayer],
     pub(crate) gaussians: u32,
     pub(crate) blocks: u32,
+    /// True when the Gaussians lie in another order than that of their numbers.
+    pub(crate) reordered: bool,
     pub(crate) sh_degree: u32,
     pub(crate) sh_format: ShFormat,
     /// For what kind of device kernels are chosen.
@@ -140,6 +144,7 @@ impl Plan {
             tile_work: scene.tile_work,
             is_drawn: scene.picture.is_none(),
             occluders: occluders.map(|occluders| Occluders { size, ..occluders }),
+            reordered: scene.reordered,
             data: FrameData {
                 scene: SceneData {
                     gaussian_count: scene.gaussians,
@@ -182,8 +187,32 @@ impl Plan {
     }
 
     /// Gaussians in the scene.
-    pub(crate) fn gaussians(&self) -> u32 {
-        self.data.scene.gaussian_count
+    pub(crate) fn gaussians(&self) -> u64 {
+        self.data.scene.gaussian_count.into()
+    }
+
+    /// Blocks in the scene.
+    pub(super) fn blocks(&self) -> u64 {
+        self.data.scene.block_count.into()
+    }
+
+    /// Pixels of the picture.
+    pub(super) fn pixels(&self) -> u64 {
+        self.size().map(|side| side as u64).iter().product()
+    }
+
+    /// So many bytes where there are tiles, or else none.
+    pub(super) fn when_tiled(&self, bytes: u64) -> u64 {
+        if self.is_tiled() { bytes } else { 0 }
+    }
+
+    /// Who reaches the tiles' picture. On a processor the host may as well read it in place; what a GPU writes stays there
+    /// until it is wanted.
+    pub(super) fn picture_location(&self) -> Location {
+        match self.way.shape {
+            DeviceShape::Cpu if !self.is_drawn => Location::Readback,
+            DeviceShape::Cpu | DeviceShape::Gpu { .. } => Location::GpuOnly,
+        }
     }
 
     /// `MODE_*`: `MODE_NONE` where there is nothing to clip with.
@@ -213,9 +242,9 @@ impl Plan {
         self.mode() != types::MODE_NONE && self.layers.most_surfaces() >= limits::SHORTLIST_FROM
     }
 
-    /// Which of the two pairs of key and order buffers holds the sorted ones.
+    /// Which of the two pairs of key and order buffers holds the sorted ones: each pass carries them to the other pair.
     pub(crate) fn sorted(&self) -> usize {
-        sort::result(self)
+        (self.way.sort_passes % 2) as usize
     }
 
     /// True when splats become pixels by tiles.

@@ -1,20 +1,46 @@
 //! Stage `project`, one invocation a survivor, computes conic, colour and depth key, the mask of tiles and, where it is
 //! drawn as one, the quad.
 
-use crate::gpu::Recorder;
-use crate::passes::buffers::{buffers, indirect};
+use crate::gpu::DeviceShape;
 use crate::passes::pipelines::OfPlan;
 use crate::passes::plan::Plan;
+use crate::passes::recording::{Recording, counted};
 use crate::passes::shaders::project;
-use crate::passes::stage::{Frame, Stage, key};
+use crate::passes::shared::{self, SCENE};
+use crate::passes::stage::Stage;
+use crate::passes::storage::{buffers, memory};
+use crate::passes::{compact, cutoff};
 use crate::settings::Show;
-use crate::types::FrameCounts;
+use crate::types::{Quad, Splat};
 
-pub(crate) const STAGE: Stage = Stage::when_finding_view(
-    "project",
-    |plan, need| need(key::<project::Program>(plan)),
-    record,
-);
+pub(crate) static STAGE: Stage = Stage::when_finding_view("project", &[STORAGES], record);
+
+memory! {
+    /// As they lie in glsl/splats.glsl: with kernels for GPUs some of their numbers apart, four splats to a vector.
+    splats: |plan| {
+        let whole = plan.gaussians() * size_of::<Splat>() as u64;
+        match plan.way.shape {
+            DeviceShape::Cpu => whole,
+            DeviceShape::Gpu { .. } => whole + plan.gaussians().div_ceil(4) * 16,
+        }
+    };
+    /// What the splats are drawn with; empty where no quads are.
+    quads: |plan| match plan.needs_quads() {
+        true => plan.gaussians() * size_of::<Quad>() as u64,
+        false => 0,
+    };
+    /// The keys of the survivors' depths; with kernels for GPUs twice as much, since their sort has a use for it later.
+    depth_keys: |plan| match plan.way.shape {
+        DeviceShape::Cpu => 4 * plan.gaussians(),
+        DeviceShape::Gpu { .. } => 8 * plan.gaussians(),
+    };
+    /// Which tiles each splat touches; empty where tiles are not wanted. Kernels for GPUs have words of the splats' rectangles
+    /// behind the masks (glsl/rects.glsl).
+    tile_masks: |plan| {
+        let rects = u64::from(plan.keeps_rects()) * plan.gaussians().div_ceil(4);
+        plan.when_tiled(16 * (plan.gaussians() + rects))
+    };
+}
 
 /// The shader reads spherical harmonics in one format; without cut splats it reads no cutoff records.
 impl OfPlan for project::Constants {
@@ -31,12 +57,13 @@ impl OfPlan for project::Constants {
     }
 }
 
-fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
-    let (scene, b) = (frame.scene, frame.buffers);
+fn record(recording: &mut Recording<'_, '_>) {
     let buffers = buffers!(project {
-        b => [frame, survivors, counts, splats, quads, depth_keys, cut_records, tile_masks],
-        scene => [gaussians, sh],
+        shared::MEMORY => [frame, counts],
+        SCENE => [gaussians, sh],
+        compact::MEMORY => [survivors],
+        cutoff::MEMORY => [cut_records],
+        MEMORY => [splats, quads, depth_keys, tile_masks],
     });
-    let groups = indirect!(b.counts, FrameCounts, project_groups);
-    frame.dispatch(recorder, buffers, (), groups);
+    recording.dispatch(buffers, (), counted!(project_groups));
 }

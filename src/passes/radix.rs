@@ -2,12 +2,14 @@
 //! invocations read and write neighbouring memory. Stage `sort` sorts the survivors with it, and stage `bin` the pairs of
 //! macro-tile and splat.
 
-use crate::gpu::{Buffer, DeviceShape, Groups, LEAST_SUBGROUP, Recorder};
+use crate::gpu::{DeviceShape, LEAST_SUBGROUP};
 use crate::limits;
-use crate::passes::pipelines::{Kernel, PipelineKey};
+use crate::passes::pipelines::Kernel;
 use crate::passes::plan::Plan;
+use crate::passes::recording::{Groups, Recording};
 use crate::passes::shaders::{radix_count, radix_scan, radix_scatter};
-use crate::passes::stage::Frame;
+use crate::passes::shared;
+use crate::passes::storage::{Storage, buffers};
 
 // The shaders take for granted that every device has such workgroups, that they have an invocation a digit, whose halves are
 // alike, that counts have 16 bits, that those of the smallest subgroups have room, and that subgroups of up to 128 are whole.
@@ -61,12 +63,6 @@ impl Kernels {
             },
         }
     }
-
-    pub(super) fn need(self, need: &mut dyn FnMut(PipelineKey)) {
-        need(self.count.key());
-        need(self.scan.key());
-        need(self.scatter.key());
-    }
 }
 
 /// Words of the histogram for as many keys: for each partition its keys of each digit, and its least and greatest key; and
@@ -79,87 +75,73 @@ pub(super) fn histogram_words(keys: u64) -> u64 {
 
 /// A pass: the keys and what they order go from the first pair of buffers to the second.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Pass<'a> {
+pub(super) struct Pass {
     /// Its number, from 0, and how many there are.
     pub(super) number: u32,
     pub(super) passes: u32,
-    pub(super) keys: [&'a Buffer; 2],
-    pub(super) order: [&'a Buffer; 2],
+    pub(super) keys: [&'static Storage; 2],
+    pub(super) order: [&'static Storage; 2],
     /// The keys for whichever pass is the first that the device does not skip.
-    pub(super) first_keys: &'a Buffer,
-    pub(super) histogram: &'a Buffer,
+    pub(super) first_keys: &'static Storage,
+    pub(super) histogram: &'static Storage,
     /// Where one pass that sorts all pairs leaves where those of each of so many macro-tiles begin.
-    pub(super) macro_begins: Option<(&'a Buffer, u32)>,
+    pub(super) macro_begins: Option<(&'static Storage, u32)>,
 }
 
-impl Pass<'_> {
+impl Pass {
     /// Records the count of each partition's digits.
     pub(super) fn count(
         &self,
         kernels: &Kernels,
-        frame: &Frame<'_>,
-        recorder: &mut Recorder<'_>,
-        groups: Groups<'_>,
+        recording: &mut Recording<'_, '_>,
+        groups: Groups,
     ) {
-        let b = frame.buffers;
         let keys = if self.number == 0 {
             self.first_keys
         } else {
             self.keys[0]
         };
-        let buffers = radix_count::Buffers {
-            frame: &b.frame,
-            counts: &b.counts,
+        let buffers = buffers!(radix_count {
+            shared::MEMORY => [frame, counts];
             keys,
             histogram: self.histogram,
-        };
+        });
         let params = radix_count::Params { pass: self.number };
-        kernels
-            .count
-            .dispatch(frame.pipelines, recorder, buffers, params, groups);
+        recording.dispatch_kernel(&kernels.count, buffers, params, groups);
     }
 
     /// Records what follows the count: where each partition's keys of each digit go, and the way there.
     pub(super) fn carry(
         &self,
         kernels: &Kernels,
-        frame: &Frame<'_>,
-        recorder: &mut Recorder<'_>,
-        groups: Groups<'_>,
+        recording: &mut Recording<'_, '_>,
+        groups: Groups,
     ) {
-        let (b, pipelines) = (frame.buffers, frame.pipelines);
-        let buffers = radix_scan::Buffers {
-            frame: &b.frame,
-            counts: &b.counts,
+        let buffers = buffers!(radix_scan {
+            shared::MEMORY => [frame, counts];
             histogram: self.histogram,
-        };
+        });
         let params = radix_scan::Params {
             pass: self.number,
             passes: self.passes,
         };
         let digits = Groups::Count(1 << limits::SORT_BITS);
-        kernels
-            .scan
-            .dispatch(pipelines, recorder, buffers, params, digits);
-        let buffers = radix_scatter::Buffers {
-            frame: &b.frame,
-            counts: &b.counts,
+        recording.dispatch_kernel(&kernels.scan, buffers, params, digits);
+        let (macro_begins, macro_tiles) = self.macro_begins.unwrap_or((self.order[1], 0));
+        let buffers = buffers!(radix_scatter {
+            shared::MEMORY => [frame, counts];
             histogram: self.histogram,
             keys: self.keys[0],
             order: self.order[0],
             sorted_keys: self.keys[1],
             sorted_order: self.order[1],
             depth_keys: self.first_keys,
-            macro_begins: self
-                .macro_begins
-                .map_or(self.order[1], |(begins, _)| begins),
-        };
+            macro_begins,
+        });
         let params = radix_scatter::Params {
             pass: self.number,
-            macro_tiles: self.macro_begins.map_or(0, |(_, count)| count),
+            macro_tiles,
         };
-        kernels
-            .scatter
-            .dispatch(pipelines, recorder, buffers, params, groups);
+        recording.dispatch_kernel(&kernels.scatter, buffers, params, groups);
     }
 }

@@ -2,83 +2,107 @@
 //! new surface and change what the rasteriser holds of them. The survivors, which are all in view, and their centres,
 //! colours, order and tiles stay.
 
-use crate::gpu::Recorder;
-use crate::passes::block_list::{self, ListFor};
-use crate::passes::blocks::{groups_of_blocks, groups_of_list};
-use crate::passes::buffers::{buffers, indirect};
+use crate::limits;
+use crate::passes::block_list::{self, ListFor, groups_of_blocks, groups_of_list};
+use crate::passes::plan::Plan;
+use crate::passes::recording::{Recording, counted};
 use crate::passes::shaders::{reclip, reclip_blocks, reclip_compact, reclip_scan, recut};
-use crate::passes::stage::{Frame, Stage, key};
+use crate::passes::shared::{self, SCENE};
+use crate::passes::stage::Stage;
+use crate::passes::storage::{buffers, memory};
 use crate::passes::work::Work;
-use crate::types::FrameCounts;
+use crate::passes::{blocks, classify, compact, cutoff, project};
 
 /// The stage that finds which sides change.
-pub(crate) const RECLIP: Stage = Stage {
+pub(crate) static RECLIP: Stage = Stage {
     name: "reclip",
     needed: |plan| plan.reclips(),
     missed: |_| false,
-    pipelines: |plan, need| {
-        need(key::<reclip_blocks::Program>(plan));
-        need(key::<block_list::Program>(plan));
-        need(key::<reclip::Program>(plan));
-        need(key::<reclip_scan::Program>(plan));
-        need(key::<reclip_compact::Program>(plan));
-    },
+    memory: &[STORAGES],
     record: record_reclip,
 };
 
 /// The stage that changes what the rasteriser holds of those survivors.
-pub(crate) const RECUT: Stage = Stage {
+pub(crate) static RECUT: Stage = Stage {
     name: "recut",
     needed: |plan| plan.reclips(),
     missed: |_| false,
-    pipelines: |plan, need| need(key::<recut::Program>(plan)),
+    memory: &[],
     record: record_recut,
 };
 
-fn record_reclip(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
-    let (scene, b, s) = (frame.scene, frame.buffers, frame.reclip());
+// Only frames whose camera has stood still have them.
+memory! {
+    /// Which blocks are looked at.
+    revisits: |plan| reclipped(plan, 4 * plan.blocks());
+    /// What is kept of each block.
+    reclips: |plan| reclipped(plan, 4 * u64::from(limits::RECLIP_WORDS) * plan.blocks());
+    /// The survivors that change, and their places among those that are cut.
+    recuts: |plan| reclipped(plan, 8 * plan.gaussians());
+    /// The tiles that hold any of these.
+    dirty: |plan| reclipped(plan, plan.when_tiled(4 * u64::from(plan.data.tiles.tile_count)));
+}
+
+/// So many bytes, in a reclipped frame.
+fn reclipped(plan: &Plan, bytes: u64) -> u64 {
+    if plan.reclips() { bytes } else { 0 }
+}
+
+fn record_reclip(recording: &mut Recording<'_, '_>) {
     let buffers = buffers!(reclip_blocks {
-        b => [frame, surfaces, block_sides, block_counts, shortlists],
-        scene => [blocks],
-        s => [revisits, reclips],
+        shared::MEMORY => [frame, surfaces],
+        SCENE => [blocks],
+        blocks::MEMORY => [block_sides],
+        classify::MEMORY => [block_counts],
+        block_list::MEMORY => [shortlists],
+        MEMORY => [revisits, reclips],
     });
     // No clip may have changed the survivors yet.
-    let fresh = matches!(frame.plan.work, Work::Reclip { fresh: true, .. });
+    let fresh = matches!(recording.plan.work, Work::Reclip { fresh: true, .. });
     let params = reclip_blocks::Params {
         fresh: fresh.into(),
     };
-    let groups = groups_of_blocks(frame.plan);
-    frame.dispatch(recorder, buffers, params, groups);
-    block_list::record(frame, recorder, &s.revisits, ListFor::Clip);
-    let looked_at = indirect!(b.counts, FrameCounts, clip_groups);
+    recording.dispatch(buffers, params, groups_of_blocks(recording.plan));
+    block_list::record(recording, &MEMORY.revisits, ListFor::Clip);
+    let looked_at = counted!(clip_groups);
     let buffers = buffers!(reclip {
-        b => [frame, surfaces, block_list, counts, block_sides, masks, shortlists],
-        scene => [gaussians],
-        s => [revisits, reclips],
+        shared::MEMORY => [frame, surfaces, counts],
+        SCENE => [gaussians],
+        block_list::MEMORY => [block_list, shortlists],
+        blocks::MEMORY => [block_sides],
+        classify::MEMORY => [masks],
+        MEMORY => [revisits, reclips],
     });
-    frame.dispatch(recorder, buffers, (), looked_at);
+    recording.dispatch(buffers, (), looked_at);
     let buffers = buffers!(reclip_scan {
-        b => [frame, counts],
-        s => [revisits, reclips],
+        shared::MEMORY => [frame, counts],
+        MEMORY => [revisits, reclips],
     });
-    frame.dispatch(recorder, buffers, (), groups_of_list(frame.plan));
+    recording.dispatch(buffers, (), groups_of_list(recording.plan));
     let buffers = buffers!(reclip_compact {
-        b => [frame, block_list, counts, block_sides, masks, block_offsets, cutoffs],
-        s => [reclips, recuts],
+        shared::MEMORY => [frame, counts],
+        block_list::MEMORY => [block_list],
+        blocks::MEMORY => [block_sides],
+        classify::MEMORY => [masks],
+        compact::MEMORY => [block_offsets, cutoffs],
+        MEMORY => [reclips, recuts],
     });
-    frame.dispatch(recorder, buffers, (), looked_at);
+    recording.dispatch(buffers, (), looked_at);
 }
 
-fn record_recut(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
-    let (scene, b, s) = (frame.scene, frame.buffers, frame.reclip());
-    // All tiles are drawn again where no frame has drawn what is in view.
-    let all = frame.plan.finds_view();
-    recorder.fill(&s.dirty, 0, s.dirty.size(), all.into());
+fn record_recut(recording: &mut Recording<'_, '_>) {
+    if recording.plan.is_tiled() {
+        // All tiles are drawn again where no frame has drawn what is in view.
+        let all = recording.plan.finds_view();
+        recording.fill(&MEMORY.dirty, all.into());
+    }
     let buffers = buffers!(recut {
-        b => [frame, survivors, counts, cut_records, tile_masks, splats, quads],
-        scene => [gaussians],
-        s => [recuts, dirty],
+        shared::MEMORY => [frame, counts],
+        SCENE => [gaussians],
+        compact::MEMORY => [survivors],
+        cutoff::MEMORY => [cut_records],
+        project::MEMORY => [tile_masks, splats, quads],
+        MEMORY => [recuts, dirty],
     });
-    let groups = indirect!(b.counts, FrameCounts, recut_groups);
-    frame.dispatch(recorder, buffers, (), groups);
+    recording.dispatch(buffers, (), counted!(recut_groups));
 }

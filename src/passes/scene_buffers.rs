@@ -9,9 +9,8 @@ use crate::camera::Camera;
 use crate::clip::Clip;
 use crate::counted::counted;
 use crate::error::{Error, Result};
-use crate::gpu::{Buffer, Device, Recorder, WriteOnly};
+use crate::gpu::{Buffer, BufferDesc, Device, Location, Recorder, WriteOnly};
 use crate::limits;
-use crate::passes::buffers::gpu_only;
 use crate::passes::pair_estimate::PairSample;
 use crate::passes::scene_layer::{PackedLayer, SceneLayer, join_sets, layer_index, sizes};
 use crate::passes::sh_storage;
@@ -315,6 +314,15 @@ pub struct Staging<'a> {
     pub offset: u64,
     /// The part, mapped for writing; it may be longer than what is needed. A slice becomes it by `into()`.
     pub bytes: WriteOnly<'a>,
+}
+
+/// A buffer that only the device sees.
+fn gpu_only(device: &Device, name: &str, size: u64) -> Result<Buffer> {
+    device.create_buffer(&BufferDesc {
+        name,
+        size,
+        location: Location::GpuOnly,
+    })
 }
 
 /// Writes what `append` makes of each Gaussian, in an order, from an offset on.

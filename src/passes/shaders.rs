@@ -3,10 +3,10 @@
 
 use smallvec::SmallVec;
 
-use crate::gpu::{Buffer, BufferAccess, BufferUse, MAX_BUFFERS, Shader};
+use crate::gpu::{BufferAccess, BufferUse, MAX_BUFFERS, Shader};
 
 /// The buffers of a program in the order of their bindings.
-pub(crate) type BufferList<'a> = SmallVec<[&'a Buffer; MAX_BUFFERS]>;
+pub(crate) type BufferList<B> = SmallVec<[B; MAX_BUFFERS]>;
 
 /// Specialisation constants: id and value. No program has more, so that a list needs no memory of its own.
 pub(crate) type ConstantList = SmallVec<[(u32, u32); 14]>;
@@ -16,7 +16,7 @@ pub(crate) trait Interface {
     /// Its name, that of its files.
     const NAME: &'static str;
     /// Its buffers, by name.
-    type Buffers<'a>: BufferSet<'a>;
+    type Buffers<B: Copy>: BufferSet<B, Program = Self>;
     /// Its parameters, as they lie in the push constants.
     type Params: bytemuck::Pod;
     /// The constants in which its pipelines differ.
@@ -29,12 +29,12 @@ pub(crate) trait Compute: Interface {
     const SHADER: &'static Shader;
 }
 
-/// The buffers of a program, by name.
-pub(crate) trait BufferSet<'a> {
+/// The buffers of a program, by name: those of a device, or the declarations of a frame's.
+pub(crate) trait BufferSet<B: Copy> {
     /// The program that has them.
-    type Program: Interface<Buffers<'a> = Self>;
+    type Program: Interface<Buffers<B> = Self>;
     /// The buffers by binding.
-    fn list(self) -> BufferList<'a>;
+    fn list(self) -> BufferList<B>;
 }
 
 /// The specialisation constants of a program, by name.

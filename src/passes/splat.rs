@@ -7,11 +7,13 @@ use ash::vk;
 
 use crate::depth::DepthMap;
 use crate::gpu::{Attachments, Drawer};
-use crate::passes::buffers::{Buffers, buffers};
+use crate::passes::buffers::Buffers;
 use crate::passes::pipelines::{Draw, Pipelines};
 use crate::passes::plan::Plan;
 use crate::passes::shaders::splat;
+use crate::passes::storage::buffers;
 use crate::passes::weight::Weight;
+use crate::passes::{cutoff, project, shared, sort};
 use crate::settings::Raster;
 use crate::types::FrameCounts;
 
@@ -50,8 +52,10 @@ pub(crate) fn record(
     map: Option<DepthMap>,
 ) {
     let buffers = buffers!(splat {
-        b => [frame, counts, splats, quads, cut_records];
-        order: &b.order[plan.sorted()],
+        shared::MEMORY => [frame, counts],
+        project::MEMORY => [splats, quads],
+        cutoff::MEMORY => [cut_records];
+        order: sort::order(plan),
     });
     let [depth_offset, depth_scale] = map.map_or([0.0; 2], |map| map.factors());
     let params = splat::Params {
@@ -66,6 +70,7 @@ pub(crate) fn record(
         Raster::Mesh => offset_of!(FrameCounts, mesh_groups),
         _ => offset_of!(FrameCounts, draw),
     };
-    let args = (&b.counts, at as u64);
+    let args = (b.get(&shared::MEMORY.counts), at as u64);
+    let buffers = (buffers, |storage| b.get(storage));
     draw(plan, attachments).draw(pipelines, drawer, buffers, params, args);
 }

@@ -5,9 +5,48 @@ use ash::vk;
 use crate::gpu::Buffer;
 use crate::limits;
 use crate::precision::TargetFormat;
+use crate::types;
+
+/// How the pixels of the tiles' picture are stored.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) enum TilePixels {
+    /// As floats, which a draw can blend.
+    #[default]
+    Float,
+    /// As those of a target of 8 bits a channel.
+    Byte,
+}
+
+impl TilePixels {
+    /// The pixels with which the tiles' picture is a target's, to the byte. `None` for 16-bit floats, to which one driver
+    /// rounds in shaders and cuts off in blending.
+    pub(crate) fn of(target: TargetFormat) -> Option<Self> {
+        match target {
+            TargetFormat::Float => Some(Self::Float),
+            TargetFormat::Unorm8 => Some(Self::Byte),
+            TargetFormat::Half => None,
+        }
+    }
+
+    /// Bytes of a pixel.
+    pub(crate) const fn bytes(self) -> u64 {
+        match self {
+            Self::Float => TargetFormat::Float.pixel_bytes(),
+            Self::Byte => TargetFormat::Unorm8.pixel_bytes(),
+        }
+    }
+
+    /// The shaders' name of them, `PIXELS_*`.
+    pub(super) const fn code(self) -> u32 {
+        match self {
+            Self::Float => types::PIXELS_FLOAT,
+            Self::Byte => types::PIXELS_BYTE,
+        }
+    }
+}
 
 /// The picture that tiles make. A tile that begins where the next one does holds nothing, and its pixels are not written.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct TilePicture {
     pub(crate) begins: Buffer,
     pub(crate) pixels: Buffer,
@@ -17,6 +56,12 @@ pub(crate) struct TilePicture {
 const BEGIN: usize = size_of::<u32>();
 
 impl TilePicture {
+    /// True when it is the same memory.
+    pub(crate) fn is(&self, other: &Self) -> bool {
+        let handles = |picture: &Self| [&picture.begins, &picture.pixels].map(Buffer::handle);
+        handles(self) == handles(other)
+    }
+
     /// Bytes of the tiles' begins and of the pixels in a picture.
     pub(crate) fn sizes(extent: vk::Extent2D, format: TargetFormat) -> [u64; 2] {
         let [width, height] = [extent.width, extent.height].map(u64::from);

@@ -4,92 +4,36 @@
 
 use std::mem::offset_of;
 
-use crate::gpu::{DeviceShape, Drawer, Recorder};
+use crate::gpu::{Buffer, DeviceShape, Drawer};
 use crate::limits;
-use crate::passes::buffers::{Buffers, TileBuffers, buffers, indirect};
+use crate::passes::bin::{lists, macro_tiles};
+use crate::passes::buffers::Buffers;
 use crate::passes::pipelines::{Draw, Kernel, Pipelines};
 use crate::passes::plan::Plan;
+use crate::passes::recording::{Recording, counted};
 use crate::passes::shaders::{composite, tiles};
-use crate::passes::stage::{Frame, Stage, Targets};
+use crate::passes::stage::{Stage, Targets};
+use crate::passes::storage::{buffers, memory};
+use crate::passes::tile_picture::TilePicture;
 use crate::passes::weight::Weight;
 use crate::passes::work::Work;
-use crate::precision::TargetFormat;
+use crate::passes::{cutoff, project, reclip, shared};
 use crate::settings::Show;
 use crate::types::{self, FrameCounts};
 
-pub(crate) const STAGE: Stage = Stage {
+pub(crate) static STAGE: Stage = Stage {
     name: "tiles",
     needed: |plan| plan.is_tiled() && plan.work != Work::Draw,
     missed: |plan| plan.is_tiled() || plan.gaussians() == 0,
-    pipelines: |plan, need| {
-        lists(plan)
-            .iter()
-            .for_each(|list| need(kernel(plan, *list).key()))
-    },
+    memory: &[STORAGES],
     record,
 };
 
-/// How the invocations of a workgroup share its tile.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(crate) struct TileWork {
-    /// Pixels that an invocation owns, one above the other.
-    rows: u32,
-    /// True when subgroups load splats together.
-    subgroups: bool,
-}
-
-impl TileWork {
-    /// The sharing that suits a device. Its subgroups can shuffle if their size is not 0.
-    pub(crate) fn suiting(shape: DeviceShape, subgroup_size: u32) -> Self {
-        let is_cpu = shape == DeviceShape::Cpu;
-        let rows = if is_cpu { limits::TILE_HEIGHT } else { 1 };
-        let invocations = limits::TILE_WIDTH * (limits::TILE_HEIGHT / rows);
-        Self {
-            rows,
-            // The shader counts on subgroups without gaps, which come together again after each branch. CPU drivers run
-            // them like that, as vectors under a mask; Vulkan does not promise it unless it is asked for. On GPUs a batch goes
-            // through shared memory, which asks for nothing.
-            subgroups: is_cpu && subgroup_size > 0 && invocations.is_multiple_of(subgroup_size),
-        }
-    }
-}
-
-/// How the pixels of the tiles' picture are stored.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub(crate) enum TilePixels {
-    /// As floats, which a draw can blend.
-    #[default]
-    Float,
-    /// As those of a target of 8 bits a channel.
-    Byte,
-}
-
-impl TilePixels {
-    /// The pixels with which the tiles' picture is a target's, to the byte. `None` for 16-bit floats, to which one driver
-    /// rounds in shaders and cuts off in blending.
-    pub(crate) fn of(target: TargetFormat) -> Option<Self> {
-        match target {
-            TargetFormat::Float => Some(Self::Float),
-            TargetFormat::Unorm8 => Some(Self::Byte),
-            TargetFormat::Half => None,
-        }
-    }
-
-    /// Bytes of a pixel.
-    pub(crate) const fn bytes(self) -> u64 {
-        match self {
-            Self::Float => TargetFormat::Float.pixel_bytes(),
-            Self::Byte => TargetFormat::Unorm8.pixel_bytes(),
-        }
-    }
-
-    /// The shaders' name of them, `PIXELS_*`.
-    const fn code(self) -> u32 {
-        match self {
-            Self::Float => types::PIXELS_FLOAT,
-            Self::Byte => types::PIXELS_BYTE,
-        }
-    }
+memory! {
+    /// The picture that the tiles make.
+    tile_picture: |plan| plan.when_tiled(plan.pixels() * plan.way.tile_pixels.bytes()), in Plan::picture_location;
+    /// The host's depth; empty where it hides nothing.
+    occluders: |plan| plan.occluders.map_or(0, |_| plan.when_tiled(4 * plan.pixels()));
 }
 
 /// The tiles that a dispatch draws: all, or with the kernels for GPUs one of the two lists of those that hold anything.
@@ -103,18 +47,12 @@ enum List {
     Several,
 }
 
-/// True when tiles in which several surfaces cut a splat are told from the others.
-pub(super) fn has_several_kinds(plan: &Plan) -> bool {
-    let weight = Weight::of(plan);
-    weight.several && weight.mode == types::MODE_EXACT
-}
-
 /// The lists that a frame draws.
-fn lists(plan: &Plan) -> &'static [List] {
+fn drawn_lists(plan: &Plan) -> &'static [List] {
     match plan.way.shape {
         DeviceShape::Cpu => &[List::All],
         // A reclipped frame takes over the lists of a frame in which nothing was cut.
-        DeviceShape::Gpu { .. } if has_several_kinds(plan) && !plan.reclips() => {
+        DeviceShape::Gpu { .. } if Weight::of(plan).has_several_kinds() && !plan.reclips() => {
             &[List::Few, List::Several]
         }
         DeviceShape::Gpu { .. } => &[List::Few],
@@ -123,7 +61,7 @@ fn lists(plan: &Plan) -> &'static [List] {
 
 fn kernel(plan: &Plan, list: List) -> Kernel<tiles::Program> {
     let weight = Weight::of(plan);
-    let is_one_of_two = list == List::Few && lists(plan).len() > 1;
+    let is_one_of_two = list == List::Few && drawn_lists(plan).len() > 1;
     let work = plan.tile_work;
     let constants = tiles::Constants {
         clip_mode: weight.mode,
@@ -152,10 +90,10 @@ fn kernel(plan: &Plan, list: List) -> Kernel<tiles::Program> {
     }
 }
 
-fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
-    let (plan, b, t) = (frame.plan, frame.buffers, frame.tiles());
+fn record(recording: &mut Recording<'_, '_>) {
+    let plan = recording.plan;
     let [depth_offset, depth_scale] = plan.occluders.map_or([0.0; 2], |o| o.map.factors());
-    let (at, size) = (frame.copied.offset, frame.copied.extent);
+    let (at, size) = (recording.copied.offset, recording.copied.extent);
     let params = tiles::Params {
         principal_point: plan.principal_point([0.0; 2]),
         sigma: plan.data.region.sigma,
@@ -166,28 +104,41 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
         copy_size: [size.width, size.height],
         list: 0,
     };
-    for &list in lists(plan) {
+    for &list in drawn_lists(plan) {
         let buffers = buffers!(tiles {
-            b => [frame, splats, cut_records];
-            picture: &t.picture.pixels,
-            picture_words: &t.picture.pixels,
-            tile_splats: &t.splats,
-            tile_begins: &t.picture.begins,
-            // Only a reclipped frame reads which tiles are dirty.
-            dirty: b.reclip.get().map_or(&b.counts, |reclip| &reclip.dirty),
-            occluders: plan.occluders.map_or(&b.counts, |_| &t.occluders),
-            tile_list: t.scratch.tile_list().unwrap_or(&b.counts),
+            shared::MEMORY => [frame],
+            project::MEMORY => [splats],
+            cutoff::MEMORY => [cut_records],
+            lists::MEMORY => [tile_splats, tile_begins],
+            macro_tiles::MEMORY => [tile_list],
+            reclip::MEMORY => [dirty],
+            MEMORY => [occluders];
+            picture: &MEMORY.tile_picture,
+            picture_words: &MEMORY.tile_picture,
         });
         let groups = match list {
-            List::All | List::Few => indirect!(b.counts, FrameCounts, tile_groups),
-            List::Several => indirect!(b.counts, FrameCounts, several_tile_groups),
+            List::All | List::Few => counted!(tile_groups),
+            List::Several => counted!(several_tile_groups),
         };
         let params = tiles::Params {
             list: (list == List::Several).into(),
             ..params
         };
-        kernel(plan, list).dispatch(frame.pipelines, recorder, buffers, params, groups);
+        recording.dispatch_kernel(&kernel(plan, list), buffers, params, groups);
     }
+}
+
+/// The picture that the tiles of a frame make.
+pub(crate) fn picture(b: &Buffers) -> TilePicture {
+    TilePicture {
+        begins: b.get(&lists::MEMORY.tile_begins).clone(),
+        pixels: b.get(&MEMORY.tile_picture).clone(),
+    }
+}
+
+/// The host's depth for tiles.
+pub(crate) fn occluders(b: &Buffers) -> &Buffer {
+    b.get(&MEMORY.occluders)
 }
 
 /// The draw of the tiles' picture, in linear light where a target asks for it and colours are shown.
@@ -205,38 +156,20 @@ pub(crate) fn composite(plan: &Plan, targets: Targets) -> Draw<composite::Progra
 pub(crate) fn record_composite(
     drawer: &mut Drawer<'_>,
     pipelines: &Pipelines,
-    (plan, b, t): (&Plan, &Buffers, &TileBuffers),
+    (plan, b): (&Plan, &Buffers),
     targets: Targets,
     origin: [f32; 2],
 ) {
     let buffers = buffers!(composite {
-        b => [frame];
-        picture: &t.picture.pixels,
-        tile_begins: &t.picture.begins,
+        shared::MEMORY => [frame],
+        lists::MEMORY => [tile_begins];
+        picture: &MEMORY.tile_picture,
     });
-    let args = (&b.counts, offset_of!(FrameCounts, composite) as u64);
+    let args = (
+        b.get(&shared::MEMORY.counts),
+        offset_of!(FrameCounts, composite) as u64,
+    );
     let params = composite::Params { origin };
+    let buffers = (buffers, |storage| b.get(storage));
     composite(plan, targets).draw(pipelines, drawer, buffers, params, args);
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn only_whole_subgroups_of_cpu_drivers_load_together() {
-        for (shape, size, subgroups) in [
-            (DeviceShape::Cpu, 4, true),
-            (DeviceShape::Cpu, 8, true),
-            (DeviceShape::Cpu, 16, false),
-            (DeviceShape::Cpu, 0, false),
-            (DeviceShape::Gpu { subgroup: 32 }, 32, false),
-        ] {
-            assert_eq!(
-                TileWork::suiting(shape, size).subgroups,
-                subgroups,
-                "{size}"
-            );
-        }
-    }
 }

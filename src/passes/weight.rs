@@ -2,37 +2,8 @@
 //! mode does not use are left at one value, so that no two pipelines differ in them alone.
 
 use crate::passes::plan::Plan;
-use crate::settings::{Decay, Miss, Settings, Show};
+use crate::settings::Show;
 use crate::types;
-
-/// The settings of a cut splat's weight, whatever the mode.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Laws {
-    /// `DECAY_*`.
-    decay: u32,
-    /// `MISS_*`.
-    miss: u32,
-    /// `PHI_*`.
-    phi: u32,
-}
-
-impl Laws {
-    /// Takes them from the settings.
-    pub(crate) fn of(settings: &Settings) -> Self {
-        Self {
-            decay: match settings.decay_law() {
-                Decay::Linear => types::DECAY_LINEAR,
-                Decay::Depth => types::DECAY_DEPTH,
-            },
-            miss: match settings.miss {
-                Miss::Keep => types::MISS_KEEP,
-                Miss::Drop => types::MISS_DROP,
-                Miss::Peak => types::MISS_PEAK,
-            },
-            phi: settings.precision.phi.code(),
-        }
-    }
-}
 
 impl Show {
     /// The shaders' name of it, `SHOW_*`.
@@ -77,5 +48,10 @@ impl Weight {
             miss: when(cuts && mode == types::MODE_RARA, laws.miss),
             phi: when(cuts && mode == types::MODE_EXACT, laws.phi),
         }
+    }
+
+    /// True when tiles in which several surfaces cut a splat are told from the others.
+    pub(super) fn has_several_kinds(&self) -> bool {
+        self.several && self.mode == types::MODE_EXACT
     }
 }

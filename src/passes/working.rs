@@ -7,7 +7,9 @@ use crate::passes::scene_buffers::SceneBuffers;
 impl Buffers {
     /// The buffer of a debug name.
     pub(crate) fn named(&self, name: &str) -> Option<&Buffer> {
-        self.all().into_iter().find(|buffer| buffer.name() == name)
+        let mut all = self.sizes().all();
+        let (storage, _) = all.find(|(storage, _)| storage.name == name)?;
+        Some(self.get(storage))
     }
 }
 

@@ -18,8 +18,8 @@ use crate::error::{Error, Result};
 use crate::gpu::Bindings;
 use crate::limits;
 use crate::passes::{
-    Kept, Occluders, Plan, SceneBuffers, SceneFacts, SceneLayer, Sizes, Targets, TilePixels,
-    TileWork, Work,
+    Kept, Occluders, Plan, SceneBuffers, SceneFacts, SceneLayer, Targets, TilePixels, TileWork,
+    Work,
 };
 use crate::precision::ShFormat;
 use crate::settings::{Raster, Settings};
@@ -97,7 +97,7 @@ impl Renderer {
             plan.work = self.work(request.scene.id, &plan)?;
         }
         let held = self.memory.allocated().map(|held| held.sizes().largest());
-        let needed = Sizes::of(&plan).largest().max(held.unwrap_or(0));
+        let needed = plan.sizes().largest().max(held.unwrap_or(0));
         let bindings = self.bindings_of(needed.max(request.scene.largest()));
         Ok(!self.pipelines.has_all(bindings, self.targets(), &plan))
     }
@@ -147,6 +147,7 @@ impl Renderer {
         }
         let facts = SceneFacts {
             blocks: scene.block_count(),
+            reordered: scene.reordered,
             sh_degree: scene.sh_degree,
             sh_format: scene.sh_format,
             picture,
@@ -267,6 +268,7 @@ impl Renderer {
             layers,
             gaussians,
             blocks: 0,
+            reordered: true,
             sh_degree: 0,
             sh_format: ShFormat::default(),
             shape,
@@ -338,7 +340,12 @@ impl Renderer {
         if !matches!(work, Work::Reclip { .. }) {
             return Ok(work);
         }
-        match self.memory.ensure_reclip(&self.device) {
+        let reclipped = Plan {
+            work,
+            ..plan.clone()
+        };
+        let prepared = self.frames.prepared();
+        match self.memory.extend(&self.device, &reclipped, prepared) {
             Ok(()) => Ok(work),
             // A whole frame needs less memory than a reclipped one.
             Err(Error::Memory(_) | Error::Budget(_)) => {

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::frames::Decision;
-use crate::passes::{Buffers, Pipelines, TilePicture};
+use crate::passes::{Buffers, Pipelines, TilePicture, tiles};
 use crate::stats::RasterChoice;
 
 /// A frame that [`Renderer::configure`](super::Renderer::configure) has configured and
@@ -54,21 +54,20 @@ impl ConfiguredFrame {
     }
 
     /// As of a [`PreparedFrame`].
-    pub(crate) fn picture(&self) -> Option<&Arc<TilePicture>> {
+    pub(crate) fn picture(&self) -> Option<TilePicture> {
         self.state.picture()
     }
 }
 
 impl PreparedFrame {
     /// The tiles' picture, if it is the frame's; `None` where that is drawn.
-    pub(crate) fn picture(&self) -> Option<&Arc<TilePicture>> {
+    pub(crate) fn picture(&self) -> Option<TilePicture> {
         self.state.picture()
     }
 }
 
 impl FrameState {
-    fn picture(&self) -> Option<&Arc<TilePicture>> {
-        let tiles = self.buffers.tiles.as_ref()?;
-        (!self.decision.plan.is_drawn).then_some(&tiles.picture)
+    fn picture(&self) -> Option<TilePicture> {
+        (!self.decision.plan.is_drawn).then(|| tiles::picture(&self.buffers))
     }
 }

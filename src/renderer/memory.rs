@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::pair_room::PairRoom;
 use crate::error::{Error, Result};
 use crate::gpu::Device;
-use crate::passes::{Buffers, Plan, Sizes};
+use crate::passes::{Buffers, Plan, Sizes, Spare};
 
 /// The buffers that all frames share, one after the other.
 #[derive(Debug, Default)]
@@ -20,9 +20,8 @@ pub(super) struct WorkingMemory {
 impl WorkingMemory {
     /// True when a plan fits into the present buffers.
     pub(super) fn fits(&self, plan: &Plan) -> bool {
-        self.buffers
-            .as_ref()
-            .is_some_and(|buffers| buffers.fit(plan))
+        let buffers = self.buffers.as_ref();
+        buffers.is_some_and(|buffers| buffers.fit(&plan.sizes()))
     }
 
     /// Replaces the buffers that a plan does not fit into, and keeps the others; after an error there are none. `frames` are
@@ -33,24 +32,27 @@ impl WorkingMemory {
         plan: &Plan,
         frames: (u64, u64),
     ) -> Result<()> {
-        self.reserve(device, (plan, Sizes::of(plan), false), frames)
+        self.reserve(device, (plan, plan.sizes()), frames)
     }
 
-    /// As [`replace`](Self::replace), by buffers of these sizes at least, and on demand those of reclipped frames. Where the
-    /// budget has no room for them, the buffers are as they were.
+    /// As [`replace`](Self::replace), by buffers of these sizes at least. Where the budget has no room for them, the buffers are
+    /// as they were.
     pub(super) fn reserve(
         &mut self,
         device: &Device,
-        (plan, need, reclips): (&Plan, Sizes, bool),
+        (plan, need): (&Plan, Sizes),
         (prepared, finished): (u64, u64),
     ) -> Result<()> {
         let had = self.buffers.as_deref();
-        let spare = had.map(|buffers| buffers.spare_for(need));
-        let (mut spare, sizes) = spare.unwrap_or_default();
+        let serving = had.filter(|buffers| buffers.sizes().serve(&need));
         // Nothing becomes smaller, so that going back to a frame before allocates nothing.
-        let all = need.or(sizes);
-        spare.retain(all, plan);
-        let missing = Buffers::missing(&spare, all, plan, reclips);
+        let all = match serving {
+            Some(buffers) => need.clone().or(buffers.sizes()),
+            None => need.clone(),
+        };
+        let spare = serving.map(|buffers| buffers.spare(plan, &all, |has, needs| has >= needs));
+        let spare = spare.unwrap_or_default();
+        let missing = spare.missing(&all);
         // What no frame in flight uses goes before the rest comes.
         let goes = had.filter(|_| finished >= prepared);
         let goes = goes.map_or(0, |buffers| buffers.outgrown(&spare));
@@ -62,16 +64,31 @@ impl WorkingMemory {
         self.retired
             .extend(outgrown.map(|buffers| (prepared, buffers)));
         self.free_finished(finished);
-        let made = match (Buffers::new(device, plan, all, spare), had_spare) {
-            // What was kept may be larger than this plan needs.
-            (Err(Error::Memory(_)), true) => Buffers::new(device, plan, need, Default::default()),
+        let made = match (Buffers::new(device, plan, all, &spare), had_spare) {
+            (Err(Error::Memory(_)), true) => {
+                drop(spare); // what was kept may be larger than this plan needs
+                Buffers::new(device, plan, need, &Spare::default())
+            }
             (made, _) => made,
         };
-        let buffers = self.buffers.insert(Arc::new(made?));
-        match reclips {
-            true => buffers.ensure_reclip(device),
-            false => Ok(()),
+        self.buffers = Some(Arc::new(made?));
+        Ok(())
+    }
+
+    /// Adds the further buffers of a reclipped frame, after so many prepared ones; after an error the buffers are as they were.
+    pub(super) fn extend(&mut self, device: &Device, plan: &Plan, prepared: u64) -> Result<()> {
+        let (had, need) = (self.buffers(), plan.sizes());
+        if had.fit(&need) {
+            return Ok(());
         }
+        let all = need.or(had.sizes());
+        let spare = had.spare(plan, &all, |has, needs| has >= needs);
+        let missing = spare.missing(&all);
+        device.check_budget("a frame that takes over from the one before", missing, 0)?;
+        let made = Buffers::new(device, plan, all, &spare)?;
+        let had = self.buffers.replace(Arc::new(made));
+        self.retired.extend(had.map(|buffers| (prepared, buffers)));
+        Ok(())
     }
 
     /// Frees buffers that only the first `finished` frames have used.
@@ -84,11 +101,11 @@ impl WorkingMemory {
         self.retired.clear();
         let had = self.buffers.take();
         if let Some(plan) = plan {
-            let sizes = Sizes::of(plan);
-            let mut spare = had.as_deref().map(Buffers::spare).unwrap_or_default();
-            spare.retain_exact(sizes, plan);
+            let sizes = plan.sizes();
+            let exact = |buffers: &Buffers| buffers.spare(plan, &sizes, |has, needs| has == needs);
+            let spare = had.as_deref().map(exact).unwrap_or_default();
             drop(had);
-            self.buffers = Some(Arc::new(Buffers::new(device, plan, sizes, spare)?));
+            self.buffers = Some(Arc::new(Buffers::new(device, plan, sizes, &spare)?));
         }
         Ok(())
     }
@@ -114,11 +131,6 @@ impl WorkingMemory {
             self.retired.push((prepared, buffers.clone()));
         }
         is_replaced
-    }
-
-    /// Adds the further buffers of a reclipped frame.
-    pub(super) fn ensure_reclip(&self, device: &Device) -> Result<()> {
-        self.buffers().ensure_reclip(device)
     }
 
     /// The buffers, if a frame has been configured.

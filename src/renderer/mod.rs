@@ -253,8 +253,10 @@ impl Renderer {
     /// The sides that view and clip have found for each block.
     #[cfg(test)]
     pub(crate) fn block_sides(&self) -> Vec<u32> {
-        let sides = &self.memory.buffers().block_sides;
-        bytemuck::pod_collect_to_vec(&self.device.download(sides).expect("reads back"))
+        let sides = self
+            .working_buffer("block_sides")
+            .expect("a frame was configured");
+        bytemuck::pod_collect_to_vec(&sides)
     }
 }
 

@@ -171,7 +171,7 @@ impl Picker {
         // SAFETY: the caller's promises are those asked for.
         let frame = unsafe { self.renderer.prepare(cmd, scene, None, frame) }?;
         let tiles = frame.picture().filter(|_| scene.count > 0);
-        if let Some(tiles) = tiles {
+        if let Some(tiles) = &tiles {
             // SAFETY: the caller's promises are those of `prepare`; the tiles' buffers live as the frame's do, and the slot's
             // until its next request or the picker's end, which come after this one has finished.
             let mut recorder = unsafe { Recorder::begin(&device, cmd, None) };

@@ -6,7 +6,7 @@ use super::frame::FrameState;
 use super::{ConfiguredFrame, PreparedFrame, Renderer, out_of_order};
 use crate::error::Result;
 use crate::gpu::{DepthImage, Drawer, Recorder};
-use crate::passes::{self, Frame, Kept, SceneBuffers, Work, tiles};
+use crate::passes::{self, Kept, Resources, SceneBuffers, Work, tiles};
 
 impl Renderer {
     /// Records a frame's stages up to the draw, outside any rendering scope. `depth` is what the host has drawn already, for a
@@ -62,20 +62,18 @@ impl Renderer {
         if plan.gaussians() > 0 {
             // SAFETY: the caller promises that `cmd` is recording, outside a rendering scope.
             let mut recorder = unsafe { Recorder::begin(&self.device, cmd, slot.timer.as_mut()) };
-            let tiles = state.buffers.tiles.as_ref();
-            let occluders = depth.zip(plan.occluders).zip(tiles);
-            let copied = occluders.map(|((depth, occluders), tiles)| {
+            let copied = depth.zip(plan.occluders).map(|(depth, occluders)| {
+                let to = tiles::occluders(&state.buffers);
                 // SAFETY: the caller promises the image, its layout and that its depths are visible.
-                unsafe { recorder.copy_depth(depth, &tiles.occluders, occluders.size) }
+                unsafe { recorder.copy_depth(depth, to, occluders.size) }
             });
-            let frame = Frame {
-                plan,
+            let resources = Resources {
                 pipelines: &state.pipelines,
                 scene,
                 buffers: &state.buffers,
-                copied: copied.unwrap_or_default(),
             };
-            passes::record(&frame, &mut recorder, &slot.counts);
+            let copied = copied.unwrap_or_default();
+            passes::record(plan, &mut recorder, resources, copied, &slot.counts);
             self.keep(scene, &state);
         }
         Ok(PreparedFrame {
@@ -125,7 +123,6 @@ impl Renderer {
         }
         let (map, targets) = (decision.depth_map, decision.targets);
         let pipelines = &state.pipelines;
-        let tiled = buffers.tiles.as_ref().filter(|_| plan.is_tiled());
         let newest = self.frames.newest_mut();
         let timer = newest.and_then(|frame| frame.timer.as_mut());
         // SAFETY: the caller promises that `cmd` is recording inside a fitting rendering scope.
@@ -134,8 +131,8 @@ impl Renderer {
             drawer.picture(origin, plan.size());
             let frame = (plan, buffers);
             passes::splat::record(drawer, pipelines, frame, targets.colour, origin, map);
-            if let Some(t) = tiled {
-                tiles::record_composite(drawer, pipelines, (plan, buffers, t), targets, origin);
+            if plan.is_tiled() {
+                tiles::record_composite(drawer, pipelines, frame, targets, origin);
             }
         });
         Ok(())
@@ -167,8 +164,8 @@ impl Renderer {
         }
         let (decision, buffers) = (&state.decision, &*state.buffers);
         let plan = &decision.plan;
-        let depths = decision.targets.expected_depth.zip(buffers.depth.as_ref());
-        let Some((attachments, depths)) = depths.filter(|_| plan.gaussians() > 0) else {
+        let attachments = decision.targets.expected_depth;
+        let Some(attachments) = attachments.filter(|_| plan.gaussians() > 0) else {
             return Ok(());
         };
         let pipelines = &state.pipelines;
@@ -178,7 +175,7 @@ impl Renderer {
         let mut drawer = unsafe { Drawer::new(&self.device, cmd, timer) };
         drawer.pass("splat_depth", |drawer| {
             drawer.picture(origin, plan.size());
-            let frame = (plan, buffers, depths);
+            let frame = (plan, buffers);
             let map = (decision.depth_map, decision.unit);
             passes::depth::record_draw(drawer, pipelines, frame, attachments, origin, map);
         });

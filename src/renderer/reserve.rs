@@ -37,25 +37,29 @@ impl Renderer {
         let mut sizes: Option<Sizes> = None;
         let mut largest = None;
         self.for_each_plan(limits, pairs, &mut |plan, settings| {
-            let mut more = Sizes::of(plan);
-            if plan.is_tiled() && sizes.is_none_or(|sizes| !sizes.hold_tiles_of(more)) {
+            let mut more = plan.sizes();
+            let holds_tiles = |sizes: &Sizes| sizes.hold_tiles_of(&more);
+            if plan.is_tiled() && !sizes.as_ref().is_some_and(holds_tiles) {
                 more = of_lower_pictures(plan, settings)?;
             }
-            let more = more.reserved(limits.layers);
-            sizes = Some(sizes.map_or(more, |sizes| sizes.or(more)));
+            let more = more.reserved();
+            sizes = Some(match sizes.take() {
+                Some(sizes) => sizes.or(&more),
+                None => more,
+            });
             largest.get_or_insert_with(|| plan.clone());
             Ok(())
         })?;
         let (Some(sizes), Some(plan)) = (sizes, largest) else {
             return Ok(());
         };
-        let reclips = self.desc.reuse;
         let memory = &mut self.memory;
+        let largest = sizes.largest();
         // A thread of its own waits for nothing.
         let frames = (self.frames.prepared(), self.frames.finished_at_least());
-        memory.reserve(&self.device, (&plan, sizes, reclips), frames)?;
+        memory.reserve(&self.device, (&plan, sizes), frames)?;
         memory.pairs = pairs;
-        self.compile(limits, pairs, sizes)
+        self.compile(limits, pairs, largest)
     }
 
     /// Gives back the working memory, also what was [reserved](Self::reserve), but for what a frame like `keep` needs: for
@@ -71,7 +75,11 @@ impl Renderer {
         let mut pairs = PairRoom::default();
         let plan = plan.map(|mut plan| {
             let needed = self.frames.newest().map_or(0, |frame| frame.pairs());
-            pairs.make(plan.gaussians(), plan.data.tiles.tile_count, needed);
+            pairs.make(
+                plan.data.scene.gaussian_count,
+                plan.data.tiles.tile_count,
+                needed,
+            );
             if plan.is_tiled() {
                 pairs.expect(self.estimate.last());
             }
@@ -103,13 +111,13 @@ impl Renderer {
         pairs
     }
 
-    /// Compiles the pipelines of all frames within limits, whose largest buffers have these sizes. The lock that renderers
+    /// Compiles the pipelines of all frames within limits, whose largest buffer has so many bytes. The lock that renderers
     /// share is taken for one kind of frame at a time.
-    fn compile(&mut self, limits: &FrameLimits, pairs: PairRoom, sizes: Sizes) -> Result<()> {
+    fn compile(&mut self, limits: &FrameLimits, pairs: PairRoom, largest: u64) -> Result<()> {
         let targets = self.targets();
-        let of_memory = self.bindings_of(sizes.largest());
+        let of_memory = self.bindings_of(largest);
         let scene = SceneBuffers::largest_of(limits.gaussians, limits.sh_format);
-        let of_scene = self.bindings_of(sizes.largest().max(scene));
+        let of_scene = self.bindings_of(largest.max(scene));
         let mut pipelines = std::mem::take(&mut self.pipelines);
         let compiled = self.for_each_plan(limits, pairs, &mut |plan, _| {
             pipelines.ensure(&self.device, of_memory, targets, plan)?;
@@ -160,13 +168,16 @@ impl Renderer {
         let (raster, _) = self.choose_raster(settings, tiles(size))?;
         let facts = SceneFacts {
             gaussians: limits.gaussians,
-            blocks: limits.gaussians.div_ceil(limits::BLOCK_SIZE),
+            // Each layer begins with a block of its own.
+            blocks: limits.gaussians.div_ceil(limits::BLOCK_SIZE) + limits.layers,
             sh_format: limits.sh_format,
             pair_capacity: pairs.room(),
             redrawn: self.needs_tiles(settings),
             ..self.facts(layers, limits.gaussians, raster, self.depth_map())
         };
-        Plan::new(facts, &camera, clip, settings)
+        let mut plan = Plan::new(facts, &camera, clip, settings)?;
+        plan.data.scene.layer_count = limits.layers;
+        Ok(plan)
     }
 
     /// The parts of a frame that may be computed in place of the whole.
@@ -186,10 +197,10 @@ impl Renderer {
 /// The sizes of a plan and of the same for lower pictures, for which CPU drivers divide the rows into more parts.
 fn of_lower_pictures(plan: &Plan, settings: &Settings) -> Result<Sizes> {
     let [width, height] = plan.size().map(|side| side as u32);
-    let mut sizes = Sizes::of(plan);
+    let mut sizes = plan.sizes();
     for rows in 1..height.div_ceil(limits::TILE_HEIGHT) {
         let lower = plan.sized(width, rows * limits::TILE_HEIGHT, settings)?;
-        sizes = sizes.or(Sizes::of(&lower));
+        sizes = sizes.or(&lower.sizes());
     }
     Ok(sizes)
 }

@@ -59,7 +59,7 @@ fn recording_waits_for_no_compiler() {
 
 /// The working buffers by name: where they are, and how large.
 fn places(renderer: &Renderer) -> BTreeMap<String, (u64, u64)> {
-    let all = renderer.memory.buffers().all().into_iter();
+    let all = renderer.memory.buffers().all();
     all.map(|buffer| (buffer.name().to_owned(), (buffer.address(), buffer.size())))
         .collect()
 }

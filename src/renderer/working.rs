@@ -1,7 +1,7 @@
 //! The contents that stages have written, for tests of the stages.
 
 use super::Renderer;
-use crate::SceneBuffers;
+use crate::passes::SceneBuffers;
 
 impl Renderer {
     /// The bytes of the working buffer of a debug name, once the submitted frames have written it; nothing where there is

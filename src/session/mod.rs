@@ -152,14 +152,14 @@ impl Session {
         };
         let mut frame = configure(renderer, target)?;
         let begin = Instant::now();
-        if frame.changes_nothing() && target.holds(frame.picture(), settings.background) {
+        if frame.changes_nothing() && target.holds(frame.picture().as_ref(), settings.background) {
             return Ok(FrameStats {
                 wall_ms: ms_since(begin),
                 ..renderer.unchanged_stats(&frame)
             });
         }
         let (tiles, wall_ms, stats) = loop {
-            let tiles = frame.picture().cloned();
+            let tiles = frame.picture();
             submit(&self.device, renderer, &request, (target, frame), trace)?;
             let recorded = renderer.newest().expect("it was prepared just now");
             // A first frame finds out how much room the tiles need.

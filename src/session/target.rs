@@ -1,7 +1,6 @@
 //! A picture beside any window: drawn into on the device, or made there by tiles, then read back.
 
 use std::borrow::Cow;
-use std::sync::Arc;
 
 use ash::vk;
 
@@ -20,7 +19,7 @@ pub(super) struct Target {
     takes_tiles: bool,
     format: TargetFormat,
     /// The tiles' picture, if the last frame's is that, and its size.
-    tiles: Option<(Arc<TilePicture>, vk::Extent2D)>,
+    tiles: Option<(TilePicture, vk::Extent2D)>,
     image: Option<Image>,
     readback: Option<Buffer>,
     /// The bits of the background that the renderer's last frame was drawn on, if that is what the image shows.
@@ -104,19 +103,15 @@ impl Target {
     }
 
     /// Notes that the tiles' picture of the renderer's last frame is the picture.
-    pub(super) fn set_tiles(&mut self, tiles: Arc<TilePicture>, camera: &Camera) {
+    pub(super) fn set_tiles(&mut self, tiles: TilePicture, camera: &Camera) {
         self.tiles = Some((tiles, extent(camera)));
     }
 
     /// True when the target shows the renderer's last frame: it is the tiles' picture or, without one, the image shows it on
     /// this background.
-    pub(super) fn holds(
-        &self,
-        tiles: Option<&Arc<TilePicture>>,
-        background: Option<[f32; 3]>,
-    ) -> bool {
+    pub(super) fn holds(&self, tiles: Option<&TilePicture>, background: Option<[f32; 3]>) -> bool {
         match (tiles, &self.tiles) {
-            (Some(tiles), Some((held, _))) => Arc::ptr_eq(tiles, held),
+            (Some(tiles), Some((held, _))) => tiles.is(held),
             (Some(_), None) => false,
             (None, _) => self.held == Some(bits(background)),
         }

@@ -14,6 +14,8 @@ use crate::common;
 pub const FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 /// A picture in which each kind of work occurs. Not a multiple of a tile.
 pub const SMALL: (u32, u32) = (253, 190);
+/// A picture with more macro-tiles than a digit has values: their sort takes a second pass.
+pub const LARGE: (u32, u32) = (2600, 1500);
 
 /// The clips and modes: a name, the mode and how many planes.
 const CLIPS: [(&str, Mode, usize); 8] = [

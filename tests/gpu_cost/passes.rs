@@ -9,7 +9,7 @@ use rara::{Raster, limits};
 use rara_lab::measure::gpu_model::{COSTS, FrameNumbers};
 
 use crate::budget::{self, Rule, Table};
-use crate::frames::{Drawn, Frame, Frames, SMALL};
+use crate::frames::{Drawn, Frame, Frames, LARGE, SMALL};
 use crate::pipelines::declarations;
 
 /// The fewest invocations that fill a large GPU, and the longest chain of loads that costs no more than a few hundredths of a
@@ -95,8 +95,7 @@ fn frames_have_the_commands_in_the_budget_and_the_invocations_that_passes_declar
     }
     frames.close();
     budget::check(BTreeMap::from([("frames".into(), found)]), Rule::Ceiling);
-    // More macro-tiles than a digit has values: their sort takes a second pass.
-    let frames = Frames::on_a_gpus_kernels((2600, 1500));
+    let frames = Frames::on_a_gpus_kernels(LARGE);
     let first = &frames.all()[0];
     seen.extend(check_invocations(&frames, first, &frames.draw(first)));
     frames.close();

@@ -9,7 +9,7 @@ use rara::gpu::{CompiledShader, DeviceDesc, DeviceShape};
 
 use crate::budget::{self, Numbers, Rule, Table};
 use crate::common::folder::Folder;
-use crate::frames::{Frames, SMALL};
+use crate::frames::{Frames, LARGE, SMALL};
 use crate::spirv;
 
 /// Generations of AMD's GPUs, by the names that Mesa gives them: RDNA 2 and 3, with subgroups of 32 and of 64, and GCN, with
@@ -139,6 +139,9 @@ fn of_the_device_that_is_pretended() {
         frames.draw(frame);
     }
     add(&frames);
+    let large = Frames::on(&DeviceDesc::default(), LARGE);
+    large.draw(&all[0]);
+    add(&large);
     // Where no subgroups can be asked for there are other kernels, whatever the frame.
     let shape = DeviceShape::Gpu { subgroup: 0 };
     let without = Frames::on(&DeviceDesc::default().shape(Some(shape)), SMALL);

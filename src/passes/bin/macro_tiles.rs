@@ -2,57 +2,65 @@
 //! lists each tile's splats in batches of a macro-tile's. Pairs are written by whoever owns the place that they go to, so that
 //! a splat over the whole picture costs its tiles and nobody waits for it.
 
-use crate::error::Result;
-use crate::gpu::{Buffer, Groups, Recorder};
 use crate::limits;
-use crate::passes::bin::ScratchWords;
-use crate::passes::buffers::{buffers, indirect};
+use crate::passes::bin::lists::{self, pairs};
 use crate::passes::pipelines::OfPlan;
 use crate::passes::plan::Plan;
 use crate::passes::radix::{self, Kernels, Keys, Pass};
+use crate::passes::recording::{Groups, Recording, counted};
 use crate::passes::shaders::{
     batch_count, batch_scan, batch_scatter, macro_count, macro_expand, macro_ranges, macro_scan,
     row_scan,
 };
-use crate::passes::stage::{Frame, KernelSet, key};
-use crate::passes::{sort, tiles};
-use crate::types::{FrameCounts, TilesData};
+use crate::passes::storage::{buffers, memory};
+use crate::passes::weight::Weight;
+use crate::passes::{cutoff, project, shared, sort};
+use crate::types::TilesData;
 
-pub(super) const KERNELS: KernelSet = KernelSet {
-    pipelines: |plan, need| {
-        need(key::<macro_count::Program>(plan));
-        need(key::<macro_scan::Program>(plan));
-        need(key::<macro_expand::Program>(plan));
-        Kernels::new(plan, Keys::Pairs).need(need);
-        if passes(plan) > 1 {
-            need(key::<macro_ranges::Program>(plan));
-        }
-        need(key::<batch_count::Program>(plan));
-        need(key::<batch_scan::Program>(plan));
-        need(key::<row_scan::Program>(plan));
-        need(key::<batch_scatter::Program>(plan));
-    },
-    record,
-};
+memory! {
+    /// The pairs of each partition of splats, and of its chunks.
+    pair_sums: |plan| {
+        let partitions = plan.gaussians().div_ceil(limits::RADIX_PARTITION.into());
+        scratch(plan, partitions * (1 + CHUNKS))
+    };
+    /// The pairs of macro-tile and splat. The tiles' lists are the other half of the sort's keys, which nobody needs any more
+    /// when the lists are written.
+    macro_keys: |plan| scratch(plan, pairs(plan));
+    macro_splats: |plan| scratch(plan, pairs(plan));
+    sorted_macro_splats: |plan| scratch(plan, pairs(plan));
+    macro_histogram: |plan| scratch(plan, radix::histogram_words(pairs(plan)));
+    macro_begins: |plan| scratch(plan, count(plan) + 1);
+    /// Of each batch the splats in each tile of its macro-tile.
+    tile_counts: |plan| {
+        let batches = pairs(plan).div_ceil(limits::BATCH_SPLATS.into()) + count(plan);
+        scratch(plan, batches * u64::from(limits::MACRO_TILES))
+    };
+    row_sums: |plan| {
+        let tiles = &plan.data.tiles;
+        let [columns, _] = macro_tiles(tiles);
+        scratch(plan, 4 * u64::from(columns * (tiles.tile_count / tiles.tile_columns)))
+    };
+    /// The tiles that hold splats, and how many there are of each kind.
+    tile_list: |plan| scratch(plan, u64::from(plan.data.tiles.tile_count) + 2);
+}
 
-/// The pairs of macro-tile and splat, and what is counted of them. The tiles' lists are the other half of the sort's keys,
-/// which nobody needs any more when the lists are written.
-#[derive(Debug)]
-pub(in crate::passes) struct Scratch {
-    pair_sums: Buffer,
-    macro_keys: Buffer,
-    macro_splats: [Buffer; 2],
-    macro_histogram: Buffer,
-    macro_begins: Buffer,
-    tile_counts: Buffer,
-    row_sums: Buffer,
-    tile_list: Buffer,
+/// Bytes of so many words where these kernels run.
+fn scratch(plan: &Plan, words: u64) -> u64 {
+    lists::scratch(plan, false, words)
+}
+
+/// Macro-tiles of the picture.
+fn count(plan: &Plan) -> u64 {
+    macro_tiles(&plan.data.tiles)
+        .map(u64::from)
+        .iter()
+        .product()
 }
 
 impl OfPlan for batch_count::Constants {
     fn of(plan: &Plan) -> Self {
         Self {
-            several: tiles::has_several_kinds(plan),
+            several: Weight::of(plan).has_several_kinds(),
         }
     }
 }
@@ -75,72 +83,6 @@ fn passes(plan: &Plan) -> u32 {
         .max(1)
 }
 
-/// The buffers' names, in the order of their words.
-pub(super) const NAMES: [&str; 9] = [
-    "pair_sums",
-    "macro_keys",
-    "macro_splats",
-    "sorted_macro_splats",
-    "macro_histogram",
-    "macro_begins",
-    "tile_counts",
-    "row_sums",
-    "tile_list",
-];
-
-pub(super) fn words(plan: &Plan) -> ScratchWords {
-    let tiles = &plan.data.tiles;
-    let [columns, rows] = macro_tiles(tiles).map(u64::from);
-    let tile_rows = u64::from(tiles.tile_count / tiles.tile_columns);
-    let pairs = u64::from(plan.data.room.pair_capacity);
-    let batches = pairs.div_ceil(limits::BATCH_SPLATS.into()) + columns * rows;
-    let partitions = u64::from(plan.gaussians()).div_ceil(limits::RADIX_PARTITION.into());
-    [
-        partitions * (1 + CHUNKS),
-        pairs,
-        pairs,
-        pairs,
-        radix::histogram_words(pairs),
-        columns * rows + 1,
-        batches * u64::from(limits::MACRO_TILES),
-        columns * tile_rows * 4,
-        u64::from(tiles.tile_count) + 2, // and how many there are of each kind
-    ]
-}
-
-impl Scratch {
-    pub(super) fn new(gpu: &mut dyn FnMut(&'static str) -> Result<Buffer>) -> Result<Self> {
-        Ok(Self {
-            pair_sums: gpu("pair_sums")?,
-            macro_keys: gpu("macro_keys")?,
-            macro_splats: [gpu("macro_splats")?, gpu("sorted_macro_splats")?],
-            macro_histogram: gpu("macro_histogram")?,
-            macro_begins: gpu("macro_begins")?,
-            tile_counts: gpu("tile_counts")?,
-            row_sums: gpu("row_sums")?,
-            tile_list: gpu("tile_list")?,
-        })
-    }
-
-    pub(super) fn tile_list(&self) -> &Buffer {
-        &self.tile_list
-    }
-
-    pub(super) fn all(&self) -> [&Buffer; 9] {
-        [
-            &self.pair_sums,
-            &self.macro_keys,
-            &self.macro_splats[0],
-            &self.macro_splats[1],
-            &self.macro_histogram,
-            &self.macro_begins,
-            &self.tile_counts,
-            &self.row_sums,
-            &self.tile_list,
-        ]
-    }
-}
-
 /// A pair's key holds a macro-tile's number, column, row, columns and rows of a rectangle in it, and a mark.
 const _: () = assert!(
     limits::PAIR_BITS + 2 * (limits::MACRO_COLUMNS * limits::MACRO_ROWS).ilog2() + 1 == u32::BITS
@@ -149,45 +91,44 @@ const _: () = assert!(
 /// Chunks of splats in a partition, as in glsl/macro_tiles.glsl.
 const CHUNKS: u64 = (limits::RADIX_PARTITION / limits::RADIX_GROUP_SIZE) as u64;
 
-fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
-    let (b, t) = (frame.buffers, frame.tiles());
-    let scratch = t.scratch.macro_tiles();
-    let sort::Sorted {
-        order,
-        spare: [rects, chunk_begins, _],
-    } = sort::sorted(frame);
-    let partitions = indirect!(b.counts, FrameCounts, sort_groups);
+pub(super) fn record(recording: &mut Recording<'_, '_>) {
+    let plan = recording.plan;
+    let order = sort::order(plan);
+    let [rects, chunk_begins, _] = sort::spare(plan);
+    let partitions = counted!(sort_groups);
     let buffers = buffers!(macro_count {
-        b => [frame, counts, tile_masks],
-        scratch => [pair_sums];
+        shared::MEMORY => [frame, counts],
+        project::MEMORY => [tile_masks],
+        MEMORY => [pair_sums];
         order, rects,
     });
-    frame.dispatch(recorder, buffers, (), partitions);
+    recording.dispatch(buffers, (), partitions);
     let buffers = buffers!(macro_scan {
-        b => [frame, counts],
-        scratch => [pair_sums];
+        shared::MEMORY => [frame, counts],
+        MEMORY => [pair_sums];
         chunk_begins,
     });
-    frame.dispatch(recorder, buffers, (), partitions);
+    recording.dispatch(buffers, (), partitions);
 
     // The last pass leaves them in their own buffer: the tiles' lists take the other one's place.
-    let passes = passes(frame.plan);
-    let mut keys = [&scratch.macro_keys, &t.splats];
+    let passes = passes(plan);
+    let mut keys = [&MEMORY.macro_keys, &lists::MEMORY.tile_splats];
     if passes % 2 == 1 {
         keys.reverse();
     }
-    let splats = [&scratch.macro_splats[0], &scratch.macro_splats[1]];
-    let pair_partitions = indirect!(b.counts, FrameCounts, pair_groups);
+    let splats = [&MEMORY.macro_splats, &MEMORY.sorted_macro_splats];
+    let pair_partitions = counted!(pair_groups);
     let buffers = buffers!(macro_expand {
-        b => [frame, counts, tile_masks];
+        shared::MEMORY => [frame, counts],
+        project::MEMORY => [tile_masks];
         order, rects, chunk_begins,
         macro_keys: keys[0],
         macro_splats: splats[0],
-        histogram: &scratch.macro_histogram,
+        histogram: &MEMORY.macro_histogram,
     });
-    frame.dispatch(recorder, buffers, (), pair_partitions);
-    let kernels = Kernels::new(frame.plan, Keys::Pairs);
-    let [columns, rows] = macro_tiles(&frame.plan.data.tiles);
+    recording.dispatch(buffers, (), pair_partitions);
+    let kernels = Kernels::new(plan, Keys::Pairs);
+    let [columns, rows] = macro_tiles(&plan.data.tiles);
     for number in 0..passes {
         let pair = [number, number + 1].map(|pair| (pair % 2) as usize);
         let pass = Pass {
@@ -196,52 +137,55 @@ fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
             keys: pair.map(|pair| keys[pair]),
             order: pair.map(|pair| splats[pair]),
             first_keys: keys[0],
-            histogram: &scratch.macro_histogram,
-            macro_begins: (passes == 1).then_some((&scratch.macro_begins, columns * rows)),
+            histogram: &MEMORY.macro_histogram,
+            macro_begins: (passes == 1).then_some((&MEMORY.macro_begins, columns * rows)),
         };
         if number > 0 {
-            pass.count(&kernels, frame, recorder, pair_partitions);
+            pass.count(&kernels, recording, pair_partitions);
         }
-        pass.carry(&kernels, frame, recorder, pair_partitions);
+        pass.carry(&kernels, recording, pair_partitions);
     }
     let sorted = (passes % 2) as usize;
     if passes > 1 {
         let buffers = buffers!(macro_ranges {
-            b => [frame, counts],
-            scratch => [macro_begins];
-            macro_keys: &scratch.macro_keys,
+            shared::MEMORY => [frame, counts],
+            MEMORY => [macro_begins];
+            macro_keys: &MEMORY.macro_keys,
         });
         // And for where all end.
-        frame.dispatch(recorder, buffers, (), Groups::Count(columns * rows + 1));
+        recording.dispatch(buffers, (), Groups::Count(columns * rows + 1));
     }
 
-    let batches = indirect!(b.counts, FrameCounts, batch_groups);
+    let batches = counted!(batch_groups);
     let buffers = buffers!(batch_count {
-        b => [frame, counts, splats, tile_masks, cut_records],
-        scratch => [macro_begins, macro_keys, tile_counts];
+        shared::MEMORY => [frame, counts],
+        project::MEMORY => [splats, tile_masks],
+        cutoff::MEMORY => [cut_records],
+        MEMORY => [macro_begins, macro_keys, tile_counts];
         macro_splats: splats[sorted],
     });
-    frame.dispatch(recorder, buffers, (), batches);
+    recording.dispatch(buffers, (), batches);
     let buffers = buffers!(batch_scan {
-        b => [frame, counts],
-        scratch => [macro_begins, tile_counts, row_sums];
-        tile_begins: &t.picture.begins,
+        shared::MEMORY => [frame, counts],
+        MEMORY => [macro_begins, tile_counts, row_sums];
+        tile_begins: &lists::MEMORY.tile_begins,
     });
-    frame.dispatch(recorder, buffers, (), Groups::Count(columns * rows));
+    recording.dispatch(buffers, (), Groups::Count(columns * rows));
     let buffers = buffers!(row_scan {
-        b => [frame, counts],
-        scratch => [row_sums, tile_list];
-        tile_begins: &t.picture.begins,
+        shared::MEMORY => [frame, counts],
+        MEMORY => [row_sums, tile_list];
+        tile_begins: &lists::MEMORY.tile_begins,
     });
-    let tiles = &frame.plan.data.tiles;
+    let tiles = &plan.data.tiles;
     let rows = Groups::Count(tiles.tile_count / tiles.tile_columns);
-    frame.dispatch(recorder, buffers, (), rows);
+    recording.dispatch(buffers, (), rows);
     let buffers = buffers!(batch_scatter {
-        b => [frame, counts, splats, tile_masks],
-        scratch => [macro_begins, macro_keys, tile_counts];
+        shared::MEMORY => [frame, counts],
+        project::MEMORY => [splats, tile_masks],
+        MEMORY => [macro_begins, macro_keys, tile_counts];
         macro_splats: splats[sorted],
-        tile_begins: &t.picture.begins,
-        tile_splats: &t.splats,
+        tile_begins: &lists::MEMORY.tile_begins,
+        tile_splats: &lists::MEMORY.tile_splats,
     });
-    frame.dispatch(recorder, buffers, (), batches);
+    recording.dispatch(buffers, (), batches);
 }

@@ -1,134 +1,77 @@
 //! Finds the spans of each row of tiles, by runs of consecutive splats, then their splats in each of the row's tiles. The runs
 //! are few and long, as suits processors.
 
-use crate::error::Result;
-use crate::gpu::{Buffer, Groups, Recorder};
-use crate::passes::bin::ScratchWords;
-use crate::passes::buffers::{buffers, indirect};
+use crate::passes::bin::lists::{self, pairs};
 use crate::passes::plan::Plan;
+use crate::passes::recording::{Groups, Recording, counted};
 use crate::passes::shaders::{
     span_count, span_scan, span_scatter, tile_count, tile_scan, tile_scatter,
 };
-use crate::passes::sort;
-use crate::passes::stage::{Frame, KernelSet, key};
-use crate::types::FrameCounts;
+use crate::passes::storage::{buffers, memory};
+use crate::passes::{project, shared, sort};
 
-pub(super) const KERNELS: KernelSet = KernelSet {
-    pipelines: |plan, need| {
-        need(key::<span_count::Program>(plan));
-        need(key::<span_scan::Program>(plan));
-        need(key::<span_scatter::Program>(plan));
-        need(key::<tile_count::Program>(plan));
-        need(key::<tile_scan::Program>(plan));
-        need(key::<tile_scatter::Program>(plan));
-    },
-    record,
-};
-
-/// The counts and the spans.
-#[derive(Debug)]
-pub(in crate::passes) struct Scratch {
-    span_counts: Buffer,
-    row_begins: Buffer,
-    span_splats: Buffer,
-    span_columns: Buffer,
-    column_counts: Buffer,
+memory! {
+    /// Of each run the number of its spans in each row of tiles, and of its pairs.
+    span_counts: |plan| scratch(plan, (rows(plan) + 1) * u64::from(plan.data.tiles.span_runs));
+    row_begins: |plan| scratch(plan, rows(plan) + 1);
+    span_splats: |plan| scratch(plan, pairs(plan));
+    span_columns: |plan| scratch(plan, pairs(plan));
+    /// Of each part of a row of tiles the splats in each column.
+    column_counts: |plan| {
+        let tiles = &plan.data.tiles;
+        let parts = rows(plan) * u64::from(tiles.row_parts);
+        scratch(plan, parts * (u64::from(tiles.tile_columns) + 1))
+    };
 }
 
-/// The buffers' names, in the order of their words.
-pub(super) const NAMES: [&str; 5] = [
-    "span_counts",
-    "row_begins",
-    "span_splats",
-    "span_columns",
-    "column_counts",
-];
-
-pub(super) fn words(plan: &Plan) -> ScratchWords {
-    let tiles = &plan.data.tiles;
-    let rows = u64::from(tiles.tile_count / tiles.tile_columns);
-    let pairs = u64::from(plan.data.room.pair_capacity);
-    let parts = rows * u64::from(tiles.row_parts);
-    [
-        // A run has the number of its spans in each row of tiles, and of its pairs.
-        (rows + 1) * u64::from(tiles.span_runs),
-        rows + 1,
-        pairs,
-        pairs,
-        parts * (u64::from(tiles.tile_columns) + 1),
-        0,
-        0,
-        0,
-        0,
-    ]
+/// Rows of tiles.
+fn rows(plan: &Plan) -> u64 {
+    (plan.data.tiles.tile_count / plan.data.tiles.tile_columns).into()
 }
 
-impl Scratch {
-    pub(super) fn new(gpu: &mut dyn FnMut(&'static str) -> Result<Buffer>) -> Result<Self> {
-        Ok(Self {
-            span_counts: gpu("span_counts")?,
-            row_begins: gpu("row_begins")?,
-            span_splats: gpu("span_splats")?,
-            span_columns: gpu("span_columns")?,
-            column_counts: gpu("column_counts")?,
-        })
-    }
-
-    pub(super) fn all(&self) -> [&Buffer; 5] {
-        [
-            &self.span_counts,
-            &self.row_begins,
-            &self.span_splats,
-            &self.span_columns,
-            &self.column_counts,
-        ]
-    }
+/// Bytes of so many words where these kernels run.
+fn scratch(plan: &Plan, words: u64) -> u64 {
+    lists::scratch(plan, true, words)
 }
 
-fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
-    let (b, t) = (frame.buffers, frame.tiles());
-    let scratch = t.scratch.spans();
+pub(super) fn record(recording: &mut Recording<'_, '_>) {
     // The buffers that the sort has left over have room for the masks in the order of depth.
-    let sort::Sorted {
-        order,
-        spare: [mask_origins, masks_above, masks_below],
-    } = sort::sorted(frame);
-    let runs = indirect!(b.counts, FrameCounts, span_count_groups);
-    let runs_with_room = indirect!(b.counts, FrameCounts, span_groups);
-    let parts = indirect!(b.counts, FrameCounts, part_groups);
-    let rows = indirect!(b.counts, FrameCounts, row_groups);
+    let [mask_origins, masks_above, masks_below] = sort::spare(recording.plan);
+    let order = sort::order(recording.plan);
     let buffers = buffers!(span_count {
-        b => [frame, counts, splats, tile_masks],
-        scratch => [span_counts];
+        shared::MEMORY => [frame, counts],
+        project::MEMORY => [splats, tile_masks],
+        MEMORY => [span_counts];
         order, mask_origins, masks_above, masks_below,
     });
-    frame.dispatch(recorder, buffers, (), runs);
+    recording.dispatch(buffers, (), counted!(span_count_groups));
     let buffers = buffers!(span_scan {
-        b => [frame, counts],
-        scratch => [span_counts, row_begins],
+        shared::MEMORY => [frame, counts],
+        MEMORY => [span_counts, row_begins],
     });
-    frame.dispatch(recorder, buffers, (), Groups::Count(1));
+    recording.dispatch(buffers, (), Groups::Count(1));
     let buffers = buffers!(span_scatter {
-        b => [frame, counts, splats],
-        scratch => [span_counts, span_splats, span_columns];
+        shared::MEMORY => [frame, counts],
+        project::MEMORY => [splats],
+        MEMORY => [span_counts, span_splats, span_columns];
         order, mask_origins, masks_above, masks_below,
     });
-    frame.dispatch(recorder, buffers, (), runs_with_room);
+    recording.dispatch(buffers, (), counted!(span_groups));
     let buffers = buffers!(tile_count {
-        b => [frame],
-        scratch => [row_begins, column_counts, span_columns],
+        shared::MEMORY => [frame],
+        MEMORY => [row_begins, column_counts, span_columns],
     });
-    frame.dispatch(recorder, buffers, (), parts);
+    recording.dispatch(buffers, (), counted!(part_groups));
     let buffers = buffers!(tile_scan {
-        b => [frame],
-        scratch => [row_begins, column_counts];
-        tile_begins: &t.picture.begins,
+        shared::MEMORY => [frame],
+        MEMORY => [row_begins, column_counts];
+        tile_begins: &lists::MEMORY.tile_begins,
     });
-    frame.dispatch(recorder, buffers, (), rows);
+    recording.dispatch(buffers, (), counted!(row_groups));
     let buffers = buffers!(tile_scatter {
-        b => [frame, counts],
-        scratch => [row_begins, column_counts, span_splats, span_columns];
-        tile_splats: &t.splats,
+        shared::MEMORY => [frame, counts],
+        MEMORY => [row_begins, column_counts, span_splats, span_columns];
+        tile_splats: &lists::MEMORY.tile_splats,
     });
-    frame.dispatch(recorder, buffers, (), parts);
+    recording.dispatch(buffers, (), counted!(part_groups));
 }

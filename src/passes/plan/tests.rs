@@ -4,8 +4,8 @@ use glam::DVec3;
 
 use super::*;
 use crate::clip::Plane;
+use crate::passes::pipelines::{Kernel, PipelineKey};
 use crate::passes::shaders::project;
-use crate::passes::stage::key;
 use crate::passes::weight::Weight;
 use crate::scene::{Kind, Layer, generate};
 use crate::settings::Mode;
@@ -17,6 +17,7 @@ fn plan(mode: Mode, planes: usize) -> Plan {
         layers: &[layer],
         gaussians: 1000,
         blocks: 4,
+        reordered: false,
         sh_degree: 0,
         sh_format: ShFormat::Float,
         shape: DeviceShape::Cpu,
@@ -42,6 +43,11 @@ fn plan(mode: Mode, planes: usize) -> Plan {
     Plan::new(facts, &camera.expect("a view"), &clip, &settings).expect("a plan")
 }
 
+/// The pipeline that projects.
+fn projects_by(plan: &Plan) -> PipelineKey {
+    Kernel::<project::Program>::of(plan).key()
+}
+
 #[test]
 fn without_planes_every_mode_is_none_to_the_pipeline_and_the_byte() {
     let none = plan(Mode::None, 0);
@@ -60,10 +66,7 @@ fn without_planes_every_mode_is_none_to_the_pipeline_and_the_byte() {
             "the blocks' and the classes' pipeline"
         );
         assert_eq!(Weight::of(&plan), Weight::of(&none));
-        assert_eq!(
-            key::<project::Program>(&plan),
-            key::<project::Program>(&none)
-        );
+        assert_eq!(projects_by(&plan), projects_by(&none));
         assert_eq!(
             (plan.cuts(), plan.data.weight.cut_stride),
             (false, 0),
@@ -79,8 +82,5 @@ fn a_hard_clip_needs_no_records_and_no_weights() {
     let (none, hard) = (plan(Mode::None, 0), plan(Mode::Hard, 1));
     assert_eq!(hard.skipped(), ["cutoff"]);
     assert_eq!(Weight::of(&hard), Weight::of(&none));
-    assert_eq!(
-        key::<project::Program>(&hard),
-        key::<project::Program>(&none)
-    );
+    assert_eq!(projects_by(&hard), projects_by(&none));
 }

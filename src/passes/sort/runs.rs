@@ -1,68 +1,57 @@
 //! A radix sort by runs of consecutive keys, each owned by one invocation. The runs are few and long, as suits processors.
 //! Its scratch is `histogram`.
 
-use crate::gpu::{Groups, Recorder};
-use crate::limits;
-use crate::passes::buffers::{buffers, indirect};
+use crate::passes::recording::{Groups, Recording, counted};
 use crate::passes::shaders::{sort_count, sort_scan, sort_scatter, sort_ties};
-use crate::passes::sort::{of_count, of_pass};
-use crate::passes::stage::{Frame, KernelSet, key};
-use crate::types::FrameCounts;
-
-pub(super) const KERNELS: KernelSet = KernelSet {
-    pipelines: |plan, need| {
-        need(key::<sort_count::Program>(plan));
-        need(key::<sort_scan::Program>(plan));
-        need(key::<sort_scatter::Program>(plan));
-        need(key::<sort_ties::Program>(plan));
-    },
-    record,
-};
-
-/// Words of the histogram for so many runs: for each its keys of each digit, and its least and greatest key.
-pub(super) fn histogram_words(runs: u64) -> u64 {
-    runs * ((1 << limits::SORT_BITS) + 2)
-}
+use crate::passes::shared::{self, SCENE};
+use crate::passes::sort::keys::{KEYS, MEMORY, ORDER, groups_of_count, groups_of_pass};
+use crate::passes::storage::buffers;
+use crate::passes::{compact, project};
 
 /// Sorts the survivors by their depths, and those of one depth by their number in the scene. Of the passes that the scene's
 /// bounds ask for, the device skips the first ones, as many as there are leading digits in which the keys agree (sort.glsl).
-fn record(frame: &Frame<'_>, recorder: &mut Recorder<'_>) {
-    let b = frame.buffers;
-    let passes = frame.plan.way.sort_passes;
-    let pairs = [(&b.keys[0], &b.order[0]), (&b.keys[1], &b.order[1])];
+pub(super) fn record(recording: &mut Recording<'_, '_>) {
+    let depth_keys = &project::MEMORY.depth_keys;
+    let passes = recording.plan.way.sort_passes;
     for pass in 0..passes {
-        let (keys, order) = pairs[(pass % 2) as usize];
-        let (sorted_keys, sorted_order) = pairs[(pass % 2) as usize ^ 1];
+        let (from, to) = ((pass % 2) as usize, (pass % 2) as usize ^ 1);
         let buffers = buffers!(sort_count {
-            b => [frame, counts, histogram];
-            keys: if pass == 0 { &b.depth_keys } else { keys },
+            shared::MEMORY => [frame, counts],
+            MEMORY => [histogram];
+            keys: if pass == 0 { depth_keys } else { KEYS[from] },
         });
-        let groups = of_count(&b.counts, pass);
         let params = sort_count::Params { pass };
-        frame.dispatch(recorder, buffers, params, groups);
+        recording.dispatch(buffers, params, groups_of_count(pass));
         let buffers = buffers!(sort_scan {
-            b => [frame, counts, histogram],
+            shared::MEMORY => [frame, counts],
+            MEMORY => [histogram],
         });
         let params = sort_scan::Params { pass, passes };
-        frame.dispatch(recorder, buffers, params, Groups::Count(1));
+        recording.dispatch(buffers, params, Groups::Count(1));
         let buffers = buffers!(sort_scatter {
-            b => [frame, counts, histogram, depth_keys];
-            keys, order, sorted_keys, sorted_order,
+            shared::MEMORY => [frame, counts],
+            MEMORY => [histogram];
+            depth_keys,
+            keys: KEYS[from],
+            order: ORDER[from],
+            sorted_keys: KEYS[to],
+            sorted_order: ORDER[to],
         });
         let params = sort_scatter::Params { pass };
-        frame.dispatch(recorder, buffers, params, of_pass(&b.counts, pass));
+        recording.dispatch(buffers, params, groups_of_pass(pass));
     }
-    if frame.scene.reordered {
-        let sorted = frame.plan.sorted();
+    if recording.plan.reordered {
+        let sorted = recording.plan.sorted();
         let buffers = buffers!(sort_ties {
-            b => [frame, counts, survivors, histogram],
-            frame.scene => [gaussians];
-            keys: &b.keys[sorted],
-            order: &b.order[sorted],
-            scratch: &b.order[sorted ^ 1],
-            numbers: &b.keys[sorted ^ 1],
+            shared::MEMORY => [frame, counts],
+            SCENE => [gaussians],
+            compact::MEMORY => [survivors],
+            MEMORY => [histogram];
+            keys: KEYS[sorted],
+            order: ORDER[sorted],
+            scratch: ORDER[sorted ^ 1],
+            numbers: KEYS[sorted ^ 1],
         });
-        let runs = indirect!(b.counts, FrameCounts, sort_groups);
-        frame.dispatch(recorder, buffers, (), runs);
+        recording.dispatch(buffers, (), counted!(sort_groups));
     }
 }

@@ -94,9 +94,7 @@ pub(crate) use {
 
 /// The tools that frames are recorded with; public for tests and measurements only.
 mod inner {
-    pub use super::access::Access;
     pub use super::attachments::{Attachments, DepthAttachment};
-    pub use super::clock::Calibration;
     pub use super::draw::Drawer;
     pub use super::image::{Image, ImageDesc};
     #[cfg(feature = "lab")]
@@ -106,7 +104,8 @@ mod inner {
     #[cfg(feature = "lab")]
     pub use super::recorder::group_grid;
     pub use super::recorder::{Groups, Recorder};
-    pub use super::shader::{BufferAccess, BufferUse, MAX_BUFFERS, MAX_PARAMS, Shader};
+    pub use super::shader::{BufferAccess, BufferUse, MAX_BUFFERS, Shader};
     pub use super::timer::Timer;
-    pub use super::tracker::Tracker;
+    #[cfg(feature = "lab")]
+    pub use super::{access::Access, clock::Calibration, shader::MAX_PARAMS, tracker::Tracker};
 }

@@ -31,7 +31,7 @@ impl Shape {
     /// The inside of a solid, whose rotation is made a unit quaternion.
     ///
     /// # Errors
-    /// [`Error::Invalid`] for numbers that are not finite, sizes that are not above zero, rotations that are zero and axes
+    /// [`Error::Invalid`](crate::Error::Invalid) for numbers that are not finite, sizes that are not above zero, rotations that are zero and axes
     /// without length.
     pub fn new(solid: Solid) -> Result<Self> {
         let values = solid.values().into_iter();

@@ -53,7 +53,7 @@ pub struct Footprint<T> {
 }
 
 impl<T: Real> Footprint<T> {
-    /// The footprint of one Gaussian, or nothing if it is culled: it is nearer than the [near cut](View::near_cut) or behind the eye, or
+    /// The footprint of one Gaussian, or nothing if it is culled: it is nearer than the [near cut](super::view::ViewTransform::near_cut) or behind the eye, or
     /// fainter than 1/255 even at its centre, or its box holds no pixel centre of the picture.
     ///
     /// The opacity of an antialiased one is multiplied by the root of `det B B^T / det (B B^T + LOW_PASS I)`: then the

@@ -255,8 +255,9 @@ impl Kind {
         };
         if ![least, most].contains(&numbers.len()) {
             return Err(Error::Invalid(format!(
-                "a {} has {least} numbers ({}){more}, not {}",
+                "a {} has {} ({}){more}, not {}",
                 self.name,
+                counted(least, "number"),
                 self.numbers,
                 counted(numbers.len(), "number")
             )));

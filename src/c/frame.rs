@@ -1,14 +1,14 @@
 //! Frames: configured, prepared, drawn.
 
 use rara::ash::vk;
-use rara::{ConfiguredFrame, PreparedFrame, Result};
+use rara::{ConfiguredFrame, PreparedFrame, Renderer, Result};
 
 use crate::boundary::{RaraResult, guard, invalid, recording};
 use crate::camera::{self, RaraCamera};
 use crate::clip::{self, RaraClip};
 use crate::depth::{self, RaraDepthImage};
 use crate::handles::{alive, alone, create, destroy};
-use crate::renderer::RaraRenderer;
+use crate::renderer::{RaraRenderer, with};
 use crate::scene::RaraSceneBuffers;
 use crate::settings::{self, RaraSettings};
 
@@ -132,10 +132,22 @@ pub unsafe extern "C" fn rara_renderer_draw(
     frame: *const RaraFrame,
 ) -> RaraResult {
     // SAFETY: the caller's promises.
-    guard(|| unsafe {
-        let mut renderer = alone(renderer, "renderer")?;
+    with_prepared(renderer, cmd, frame, |renderer, frame| unsafe {
+        renderer.draw(cmd, [x, y], frame)
+    })
+}
+
+/// Draws a frame that is prepared, by a renderer and into a command buffer that are there.
+fn with_prepared(
+    renderer: *mut RaraRenderer,
+    cmd: vk::CommandBuffer,
+    frame: *const RaraFrame,
+    draw: impl FnOnce(&mut Renderer, &PreparedFrame) -> Result<()>,
+) -> RaraResult {
+    with(renderer, |renderer| {
         let frame = alive(frame, "frame")?;
-        renderer.0.draw(recording(cmd)?, [x, y], frame.prepared()?)
+        recording(cmd)?;
+        draw(renderer, frame.prepared()?)
     })
 }
 
@@ -155,12 +167,8 @@ pub unsafe extern "C" fn rara_renderer_draw_depth(
     frame: *const RaraFrame,
 ) -> RaraResult {
     // SAFETY: the caller's promises.
-    guard(|| unsafe {
-        let mut renderer = alone(renderer, "renderer")?;
-        let frame = alive(frame, "frame")?;
-        renderer
-            .0
-            .draw_depth(recording(cmd)?, [x, y], frame.prepared()?)
+    with_prepared(renderer, cmd, frame, |renderer, frame| unsafe {
+        renderer.draw_depth(cmd, [x, y], frame)
     })
 }
 

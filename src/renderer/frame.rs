@@ -53,21 +53,11 @@ impl ConfiguredFrame {
         self.state.decision.changes_nothing()
     }
 
-    /// As of a [`PreparedFrame`].
-    pub(crate) fn picture(&self) -> Option<TilePicture> {
-        self.state.picture()
-    }
-}
-
-impl PreparedFrame {
     /// The tiles' picture, if it is the frame's; `None` where that is drawn.
     pub(crate) fn picture(&self) -> Option<TilePicture> {
-        self.state.picture()
-    }
-}
-
-impl FrameState {
-    fn picture(&self) -> Option<TilePicture> {
-        (!self.decision.plan.is_drawn).then(|| tiles::picture(&self.buffers))
+        let FrameState {
+            decision, buffers, ..
+        } = &self.state;
+        (!decision.plan.is_drawn).then(|| tiles::picture(buffers))
     }
 }

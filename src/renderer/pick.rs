@@ -168,9 +168,9 @@ impl Picker {
         let slot = &mut self.slots[(self.recorded % self.slots.len() as u64) as usize];
         slot.asked = None;
         let readback = slot.room(&device, rect.extent)?;
-        // SAFETY: the caller's promises are those asked for.
-        let frame = unsafe { self.renderer.prepare(cmd, scene, None, frame) }?;
         let tiles = frame.picture().filter(|_| scene.count > 0);
+        // SAFETY: the caller's promises are those asked for.
+        unsafe { self.renderer.prepare(cmd, scene, None, frame) }?;
         if let Some(tiles) = &tiles {
             // SAFETY: the caller's promises are those of `prepare`; the tiles' buffers live as the frame's do, and the slot's
             // until its next request or the picker's end, which come after this one has finished.

@@ -215,13 +215,14 @@ fn submit(
         .map_or([0.0; 4], |[r, g, b]| [r, g, b, 1.0]);
     let image = target.drawn_into();
     let recording = Instant::now();
-    let mut recorded = recording;
+    let (mut recorded, mut is_prepared) = (recording, false);
     let submitted = device.submit_and_wait(|cmd| {
         // SAFETY: `cmd` is recording, all earlier frames were waited for, and scene, image and renderer outlive the wait
         // for this one; the rendering scope is opened and closed here around the draw, on an attachment of the renderer's
         // format.
         unsafe {
             let frame = renderer.prepare(cmd, request.scene, None, frame)?;
+            is_prepared = true;
             if let Some(image) = image {
                 image.begin_rendering(cmd, clear);
                 Drawer::new(device, cmd, None).viewport(image.extent().into());
@@ -237,8 +238,10 @@ fn submit(
         trace.cpu("submit and wait", recorded, Instant::now());
         spans::add(trace, device, renderer.newest(), recorded);
     }
-    if submitted.is_err() {
-        renderer.abandon(); // its results are missing
+    match submitted {
+        Err(_) if is_prepared => renderer.abandon(), // its results are missing
+        Err(_) => renderer.forget(),
+        Ok(()) => {}
     }
     submitted
 }

@@ -250,7 +250,7 @@ unsafe fn make(
 ) -> RaraResult {
     // SAFETY: the caller's promise.
     guard(|| unsafe {
-        // What is null or of no version is named first.
+        // A struct that is null or of no version is named before anything else.
         write(camera, camera_size, &NOWHERE, "camera")?;
         write(camera, camera_size, &made()?.into(), "camera")
     })

@@ -11,7 +11,7 @@ use crate::text::{self, fixed};
 /// Room for a camera's name, the NUL included.
 pub const RARA_MAX_CAMERA_NAME: usize = 256;
 
-/// What a file calls a camera. It never grows.
+/// The name of a camera in its file. It never grows.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RaraCameraName {

@@ -109,7 +109,7 @@ pub unsafe extern "C" fn rara_channels_default(
         };
         let wanted = default.wanted();
         default.value_count = wanted.as_ref().map_or(0, |(_, count)| *count);
-        // What is null or of no version is named first.
+        // A struct that is null or of no version is named before anything else.
         // SAFETY: the caller's promise.
         unsafe { write(channels, channels_size, &default, "channels") }?;
         wanted.map(|_| ())

@@ -5,9 +5,9 @@
 //! where errors become codes, and where structs of other versions are read.
 //!
 //! # Safety
-//! Of every function: pointers that go in are null where that is allowed, or point to what their types say, as many values as
-//! the count beside them says; strings end in NUL; what a call fills may be overwritten, and a `..._size` is its room in
-//! bytes. A function that asks for more says so.
+//! Every function asks for this: pointers that go in are null where that is allowed, or point to what their types say, as
+//! many values as the count beside them says; strings end in NUL; what a call fills may be overwritten, and a `..._size` is
+//! its room in bytes. A function that asks for more says so.
 
 #![allow(clippy::missing_safety_doc)] // it is said above
 

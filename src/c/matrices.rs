@@ -119,7 +119,7 @@ unsafe fn of_projection(
     (camera, camera_size): (*mut RaraCamera, usize),
     map: *mut RaraDepthMap,
 ) -> Result<()> {
-    // What is null or of no version is named first.
+    // A struct that is null or of no version is named before anything else.
     // SAFETY: the caller's promise.
     unsafe { write(camera, camera_size, &NOWHERE, "camera") }?;
     let ndc = match ndc.is_null() {

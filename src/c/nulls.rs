@@ -42,7 +42,7 @@ pub(crate) fn panic_if_asked() {
     assert!(!PANIC.get(), "injected");
 }
 
-/// What a call with null for every pointer and handle has given: its result, its name, and the names of its pointers.
+/// The outcome of a call with null for every pointer and handle: its result, its name, and the names of its pointers.
 type Called = (RaraResult, &'static str, &'static [&'static str]);
 
 include!(concat!(env!("OUT_DIR"), "/lists.rs"));

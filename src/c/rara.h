@@ -134,7 +134,7 @@ typedef struct RaraCamera {
     double near_cut;
 } RaraCamera;
 
-// What a file calls a camera. It never grows.
+// The name of a camera in its file. It never grows.
 typedef struct RaraCameraName {
     // The picture's name in the file, or the camera's number there: UTF-8, cut off where it does not fit.
     char text[RARA_MAX_CAMERA_NAME];

@@ -93,7 +93,7 @@ fn structs_of_later_versions_are_refused_and_of_earlier_ones_filled_up() {
             let says = format!("{argument}->struct_size is {size}, and this library's {name} has");
             assert!(error.starts_with(&says), "{error}");
         }
-        // Of the first version is the size alone: all else is as by default, of which only settings say enough.
+        // A struct of the first version has only its size: the rest is filled with defaults, which only settings can do with.
         room[0] = 8;
         room[1..].fill(u64::MAX);
         let result = read(room.as_ptr()).map_err(|error| error.to_string());

@@ -150,7 +150,7 @@ impl Serialize for Expression {
                     to.serialize_struct_variant("Node", 0, solid.name(), numbers.len())?;
                 let mut rest = &numbers[..];
                 for (name, count) in solid.kind().fields() {
-                    // Of a rotation that turns nothing there are no numbers.
+                    // A rotation that turns nothing has no numbers.
                     let (own, others) = rest.split_at(count.min(rest.len()));
                     match own {
                         [] => {}

@@ -70,7 +70,7 @@ impl<'a> Pen<'a> {
         for axis in 0..3 {
             self.circle([centre, axes.col((axis + 1) % 3), axes.col((axis + 2) % 3)]);
         }
-        // Of the unit ball the contour is a circle across the line to the eye, at one over the eye's distance.
+        // The contour of the unit ball is a circle across the line to the eye, at one over the eye's distance.
         let eye = axes.inverse() * self.sight.from(centre);
         let squared = eye.length_squared();
         let (ahead, radius) = match self.sight.is_parallel() {

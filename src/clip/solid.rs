@@ -17,7 +17,7 @@ pub enum Solid {
         /// Its boundary, which keeps the half-space.
         plane: Plane,
     },
-    /// What lies between a plane and another that is parallel to it.
+    /// The space between a plane and another that is parallel to it.
     Slab {
         /// The side of it that the slab is on.
         plane: Plane,

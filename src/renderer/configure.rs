@@ -9,6 +9,7 @@ use super::desc::ColorSpace;
 use super::frame::FrameState;
 use super::frames::{Decision, RecordedFrame};
 use super::outcome::Submission;
+use super::pair_room::Retry;
 use super::request::FrameRequest;
 use super::{ConfiguredFrame, Renderer};
 use crate::camera::Camera;
@@ -23,20 +24,6 @@ use crate::passes::{
 };
 use crate::precision::ShFormat;
 use crate::settings::{Raster, Settings};
-
-/// Where only tiles show what is asked for, lists of half the room are tried down to so many pairs.
-const LEAST_ROOM: u32 = 1 << 12;
-
-/// A frame before anything is allocated or compiled for it.
-struct Planned {
-    plan: Plan,
-    raster: Raster,
-    /// Why splats become pixels in that way.
-    reason: &'static str,
-    depth_map: Option<DepthMap>,
-    redrawn: bool,
-    needs_tiles: bool,
-}
 
 impl Renderer {
     /// Decides what a frame needs, and allocates and compiles the missing parts. The camera's picture is the
@@ -63,36 +50,33 @@ impl Renderer {
         &mut self,
         request: &FrameRequest<'_>,
     ) -> Result<ConfiguredFrame> {
-        let decision = self.in_scene(request, Self::configure_in_scene)?;
+        let mut decision = self.decide_with_memory(request)?;
+        let work = self.work(decision.scene, &decision.plan)?;
+        decision.plan.work = work;
+        let (targets, plan) = (decision.targets, &decision.plan);
+        let buffers = self.memory.buffers().clone();
+        // An earlier frame may have made the buffers larger than this one needs.
+        let bindings = self.bindings_of(buffers.sizes().largest().max(request.scene.largest()));
+        let pipelines = &mut self.pipelines;
+        decision.is_first_use = pipelines.ensure(&self.device, bindings, targets, plan)?;
         let frame = ConfiguredFrame {
             state: FrameState {
-                buffers: self.memory.buffers().clone(),
-                pipelines: self.pipelines.get(decision.bindings).clone(),
-                renderer: self.id,
                 decision,
+                buffers,
+                pipelines: pipelines.get(bindings).clone(),
+                renderer: self.id,
             },
-            basis: self.basis(),
-            _pending: self.pending.clone(),
+            prepared: self.frames.prepared(),
+            pending: self.pending.clone(),
         };
         self.note_frame(&frame);
         Ok(frame)
     }
 
-    /// What a frame that is configured now may take over from.
-    pub(super) fn basis(&self) -> (u64, u64) {
-        (self.frames.prepared(), self.forgotten)
-    }
-
     /// True when the frame of a request needs a pipeline that no renderer has made yet, which may take seconds.
     #[cfg_attr(not(feature = "view"), allow(dead_code))]
     pub(crate) fn compiles(&mut self, request: &FrameRequest<'_>) -> Result<bool> {
-        self.in_scene(request, Self::compiles_in_scene)
-    }
-
-    /// As [`compiles`](Self::compiles), where camera and clip are in the scene's units already.
-    #[cfg_attr(not(feature = "view"), allow(dead_code))]
-    fn compiles_in_scene(&mut self, request: &FrameRequest<'_>) -> Result<bool> {
-        let Planned { mut plan, .. } = self.planned(request)?;
+        let mut plan = self.decide(request)?.plan;
         if self.memory.fits(&plan) {
             plan.work = self.work(request.scene.id, &plan)?;
         }
@@ -102,26 +86,13 @@ impl Renderer {
         Ok(!self.pipelines.has_all(bindings, self.targets(), &plan))
     }
 
-    /// Does something with a request whose camera and clip are in the scene's units.
-    fn in_scene<R>(
-        &mut self,
-        request: &FrameRequest<'_>,
-        act: impl FnOnce(&mut Self, &FrameRequest<'_>) -> Result<R>,
-    ) -> Result<R> {
-        let camera = request.camera.in_scene(&self.placement);
-        let clip = request.clip.in_scene(&self.placement);
-        act(
-            self,
-            &FrameRequest {
-                camera: &camera,
-                clip: &clip,
-                ..*request
-            },
-        )
-    }
-
-    /// Decides what a frame computes whose camera and clip are in the scene's units already.
-    fn planned(&mut self, request: &FrameRequest<'_>) -> Result<Planned> {
+    /// Decides what a frame computes. It has no memory yet, so that it takes nothing over.
+    fn decide(&mut self, request: &FrameRequest<'_>) -> Result<Decision> {
+        let request = &FrameRequest {
+            camera: &request.camera.in_scene(&self.placement),
+            clip: &request.clip.in_scene(&self.placement),
+            ..*request
+        };
         let scene = request.scene;
         if !scene.is_on(&self.device) {
             return Err(Error::Invalid(
@@ -156,66 +127,54 @@ impl Renderer {
             whole: request.whole,
             ..self.facts(scene.layers(), scene.count, raster, depth_map)
         };
-        Ok(Planned {
+        Ok(Decision {
+            scene: scene.id,
             plan: Plan::new(facts, request.camera, request.clip, request.settings)?,
-            raster,
             reason,
+            targets: self.targets(),
             depth_map,
+            unit: self.placement.scale(),
+            submission: request.submission,
             redrawn,
             needs_tiles,
+            is_first_use: false,
         })
     }
 
-    /// Configures a frame whose camera and clip are in the scene's units already.
-    fn configure_in_scene(&mut self, request: &FrameRequest<'_>) -> Result<Decision> {
-        let Planned {
-            mut plan,
-            raster,
-            reason,
-            depth_map,
-            redrawn,
-            needs_tiles,
-        } = self.planned(request)?;
-        let (scene, submission) = (request.scene, request.submission);
-        if !self.memory.fits(&plan) {
+    /// Decides what a frame computes, and makes the memory for it. Where the device has none for its lists of tiles, it
+    /// has shorter ones or is drawn as quads.
+    fn decide_with_memory(&mut self, request: &FrameRequest<'_>) -> Result<Decision> {
+        let mut settings = *request.settings;
+        loop {
+            let mut decision = self.decide(&FrameRequest {
+                settings: &settings,
+                ..*request
+            })?;
+            if settings.raster != request.settings.raster {
+                decision.reason = "the device has no memory for the tiles' lists";
+            }
+            let plan = &decision.plan;
+            if self.memory.fits(plan) {
+                return Ok(decision);
+            }
             if let Some(kept) = &mut self.kept {
                 kept.holds = false;
             }
+            let frames = (
+                self.frames.prepared(),
+                self.frames.finished(request.submission),
+            );
             let memory = &mut self.memory;
-            let frames = (self.frames.prepared(), self.frames.finished(submission));
-            match memory.replace(&self.device, &plan, frames) {
-                // Frames with more pairs than there is room for are drawn as quads: that is no reason to draw none.
-                Err(Error::Budget(_)) if memory.pairs.hold(self.device.memory_budget()) => {
-                    return self.configure_in_scene(request);
-                }
-                Err(Error::Memory(_)) if raster == Raster::Tiles && !needs_tiles => {
-                    return self.configure_without_tiles(request);
-                }
-                Err(Error::Memory(_)) if needs_tiles && self.memory.pairs.room() > LEAST_ROOM => {
-                    self.memory.pairs.refuse();
-                    return self.configure_in_scene(request);
-                }
-                replaced => replaced?,
+            let Err(error) = memory.replace(&self.device, plan, frames) else {
+                return Ok(decision);
+            };
+            let (has_lists, can_be_quads) = (plan.is_tiled(), !decision.needs_tiles);
+            let budget = self.device.memory_budget();
+            match memory.pairs.retry(error, budget, has_lists, can_be_quads)? {
+                Retry::Smaller => {}
+                Retry::Quads => settings.raster = Raster::Quad,
             }
         }
-        plan.work = self.work(scene.id, &plan)?;
-        let bindings = self.bindings(scene);
-        let targets = self.targets();
-        let pipelines = &mut self.pipelines;
-        let is_first_use = pipelines.ensure(&self.device, bindings, targets, &plan)?;
-        Ok(Decision {
-            scene: scene.id,
-            plan,
-            reason,
-            bindings,
-            targets,
-            depth_map,
-            unit: self.placement.scale(),
-            submission,
-            redrawn,
-            needs_tiles,
-            is_first_use,
-        })
     }
 
     /// How splats become pixels in a picture of so many tiles, and why in that way.
@@ -287,23 +246,6 @@ impl Renderer {
         }
     }
 
-    /// Configures the same frame as quads, on a device that has no memory for so many tiles and their lists.
-    fn configure_without_tiles(&mut self, request: &FrameRequest<'_>) -> Result<Decision> {
-        self.memory.pairs.refuse();
-        let quads = Settings {
-            raster: Raster::Quad,
-            ..*request.settings
-        };
-        let configured = self.configure_in_scene(&FrameRequest {
-            settings: &quads,
-            ..*request
-        })?;
-        Ok(Decision {
-            reason: "the device has no memory for the tiles' lists",
-            ..configured
-        })
-    }
-
     /// Makes room for as many pairs of tile and splat as the frame before has shown to be needed, and as this one is expected
     /// to have. Returns whether nothing is to be drawn of the next frame where that is not enough.
     fn make_room(&mut self, request: &FrameRequest<'_>, tiles: u32) -> bool {
@@ -315,19 +257,10 @@ impl Renderer {
             self.kept = None; // the frame before was not drawn
         }
         let (fell_back, needed) = self.frames.awaited(request.submission);
-        let pairs = &mut self.memory.pairs;
-        let had = pairs.room();
-        pairs.review(self.device.memory_budget());
-        pairs.make(request.scene.count, tiles, needed);
-        if matches!(request.settings.raster, Raster::Auto | Raster::Tiles) && !pairs.is_fixed() {
-            let estimate = {
-                let whole = request.whole.unwrap_or(request.camera);
-                self.estimate.of(request.scene, request.camera, whole)
-            };
-            pairs.expect(estimate);
-        }
+        let budget = self.device.memory_budget();
+        let has_grown = self.memory.make_room(request, tiles, needed, budget);
         // Where no more room can be made, quads are drawn at once.
-        request.submission == Submission::Awaited && (!fell_back || pairs.room() > had)
+        request.submission == Submission::Awaited && (!fell_back || has_grown)
     }
 
     /// The part of a plan that has to be computed after the frame before it.
@@ -354,12 +287,6 @@ impl Renderer {
             }
             Err(error) => Err(error),
         }
-    }
-
-    /// How a frame's buffers are reached.
-    fn bindings(&self, scene: &SceneBuffers) -> Bindings {
-        // An earlier frame may have made the buffers larger than this one needs.
-        self.bindings_of(self.memory.buffers().sizes().largest().max(scene.largest()))
     }
 
     /// How buffers are reached: as wanted, unless the device cannot bind buffers as large as this one.

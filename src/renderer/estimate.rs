@@ -14,7 +14,7 @@ pub(super) struct PairEstimate {
 
 impl PairEstimate {
     /// The pairs of a scene in the picture of a camera in its space, which is a part of that of `whole`.
-    pub(super) fn of(&mut self, scene: &SceneBuffers, camera: &Camera, whole: &Camera) -> u32 {
+    pub(super) fn update(&mut self, scene: &SceneBuffers, camera: &Camera, whole: &Camera) -> u32 {
         let from = (scene.id, scene.changes, *camera, *whole);
         if self.made_of != Some(from) {
             self.pairs = scene.estimated_pairs_of_part(camera, whole);

@@ -12,10 +12,10 @@ use crate::stats::RasterChoice;
 #[derive(Debug)]
 pub struct ConfiguredFrame {
     pub(super) state: FrameState,
-    /// How many frames were prepared, and how often all was forgotten, when it was configured: it takes over results of then.
-    pub(super) basis: (u64, u64),
-    /// Shared by the renderer and all of its frames that are configured and not prepared.
-    pub(super) _pending: Arc<()>,
+    /// How many frames were prepared when it was configured: it takes over results of then.
+    pub(super) prepared: u64,
+    /// Shared by the renderer, until it forgets those results, and all of its frames that are configured and not prepared.
+    pub(super) pending: Arc<()>,
 }
 
 /// A frame that [`Renderer::prepare`](super::Renderer::prepare) has recorded and

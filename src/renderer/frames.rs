@@ -3,7 +3,7 @@
 use super::outcome::Submission;
 use crate::depth::DepthMap;
 use crate::error::Result;
-use crate::gpu::{Bindings, Buffer, BufferDesc, Device, Location, Timer};
+use crate::gpu::{Buffer, BufferDesc, Device, Location, Timer};
 use crate::passes::{Plan, Targets, Work};
 use crate::types::{self, FrameCounts};
 
@@ -15,7 +15,6 @@ pub(super) struct Decision {
     pub(super) plan: Plan,
     /// Why splats become pixels in the plan's way.
     pub(super) reason: &'static str,
-    pub(super) bindings: Bindings,
     pub(super) targets: Targets,
     /// The map from a depth in the scene's units to the host's depth buffer.
     pub(super) depth_map: Option<DepthMap>,

@@ -2,10 +2,13 @@
 
 use std::sync::Arc;
 
+use super::estimate::PairEstimate;
 use super::pair_room::PairRoom;
+use super::request::FrameRequest;
 use crate::error::{Error, Result};
 use crate::gpu::Device;
 use crate::passes::{Buffers, Plan, Sizes, Spare};
+use crate::settings::Raster;
 
 /// The buffers that all frames share, one after the other.
 #[derive(Debug, Default)]
@@ -15,6 +18,8 @@ pub(super) struct WorkingMemory {
     retired: Vec<(u64, Arc<Buffers>)>,
     /// The room for pairs of tile and splat.
     pub(super) pairs: PairRoom,
+    /// The pairs that were estimated last.
+    pub(super) estimate: PairEstimate,
 }
 
 impl WorkingMemory {
@@ -22,6 +27,26 @@ impl WorkingMemory {
     pub(super) fn fits(&self, plan: &Plan) -> bool {
         let buffers = self.buffers.as_ref();
         buffers.is_some_and(|buffers| buffers.fit(&plan.sizes()))
+    }
+
+    /// Makes room for as many pairs as a frame has shown to be needed, and as a request of a picture of so many tiles is
+    /// expected to have. Returns whether it is more than there was.
+    pub(super) fn make_room(
+        &mut self,
+        request: &FrameRequest<'_>,
+        tiles: u32,
+        needed: u32,
+        budget: Option<u64>,
+    ) -> bool {
+        let pairs = &mut self.pairs;
+        let had = pairs.room();
+        pairs.review(budget);
+        pairs.make(request.scene.count, tiles, needed);
+        if matches!(request.settings.raster, Raster::Auto | Raster::Tiles) && !pairs.is_fixed() {
+            let whole = request.whole.unwrap_or(request.camera);
+            pairs.expect(self.estimate.update(request.scene, request.camera, whole));
+        }
+        pairs.room() > had
     }
 
     /// Replaces the buffers that a plan does not fit into, and keeps the others; after an error there are none. `frames` are

@@ -45,7 +45,6 @@ pub(crate) use outcome::{Outcome, Submission};
 pub use pick::{Pick, PickTicket, Picker, Picks};
 pub(crate) use request::FrameRequest;
 
-use estimate::PairEstimate;
 use frames::FramesInFlight;
 use memory::WorkingMemory;
 use shared::SharedPipelines;
@@ -112,13 +111,9 @@ pub struct Renderer {
     frames: FramesInFlight,
     /// The results that the last prepared frame has left in the memory.
     kept: Option<Kept>,
-    /// The pairs that were estimated last.
-    estimate: PairEstimate,
     /// No other renderer of this process has it.
     id: u64,
-    /// How often all was forgotten.
-    forgotten: u64,
-    /// Shared with the frames that are configured and not prepared.
+    /// Shared with the frames that are configured and not prepared, as long as nothing is forgotten.
     pending: Arc<()>,
     /// How splats become pixels, as the log was told last.
     noted: RasterChoice,
@@ -194,9 +189,7 @@ impl Renderer {
             memory: WorkingMemory::default(),
             frames,
             kept: None,
-            estimate: PairEstimate::default(),
             id: NEXT_ID.fetch_add(1, Ordering::Relaxed),
-            forgotten: 0,
             pending: Arc::default(),
             noted: RasterChoice::default(),
         })
@@ -233,7 +226,7 @@ impl Renderer {
     /// after it.
     pub fn forget(&mut self) {
         self.kept = None;
-        self.forgotten += 1; // frames that are configured may count on it
+        self.pending = Arc::default(); // frames that are configured may count on it
     }
 
     /// Forgets the frame that was prepared last and never submitted, and what it would have computed.

@@ -1,6 +1,8 @@
 //! How many pairs of tile and splat a frame has room for. It follows from earlier frames, since nothing is read back within
 //! one, and from an estimate, so that a first frame has the room too.
 
+use crate::error::{Error, Result};
+
 /// The room before any frame has shown how many pairs there are: this many a Gaussian, where most are small, and this many
 /// a tile, where they are few and large.
 const USUAL_PER_GAUSSIAN: u32 = 2;
@@ -8,8 +10,8 @@ const USUAL_PER_TILE: u32 = 64;
 /// The most pairs, 1.5 GiB of lists, or 2.2 GiB with the kernels for GPUs: frames with more are drawn as quads.
 pub(super) const MOST: u32 = 1 << 27;
 
-/// The device has had no memory for what was estimated.
-const NO_ESTIMATES: u32 = u32::MAX;
+/// Where nothing else draws what is asked for, lists of half the room are tried down to so many pairs.
+const LEAST: u32 = 1 << 12;
 
 /// The room for pairs. It grows with the frames' needs, and does not shrink.
 #[derive(Debug, Clone, Copy)]
@@ -17,14 +19,31 @@ pub(super) struct PairRoom {
     room: u32,
     /// Less than [`MOST`] once the device has had no memory for them.
     most: u32,
-    /// The room that an estimate asked for; the most once the device has had no memory for one.
-    expected: u32,
-    /// The room that there is without growth.
+    /// The room that there is without the growth for the next frame.
     least: u32,
-    /// True when a host has reserved so much and no more.
-    fixed: bool,
-    /// The budget that had no room for more.
-    held: Option<u64>,
+    /// The room that an estimate asked for; `None` once the device has had no memory for one.
+    expected: Option<u32>,
+    growth: Growth,
+}
+
+/// Whether the room grows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Growth {
+    /// It grows with what frames need.
+    Free,
+    /// It does not under this budget, which had no room for more.
+    Held(u64),
+    /// It does not: a host has reserved so much and no more.
+    Fixed,
+}
+
+/// What is left to try of a frame that there was no memory for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Retry {
+    /// The same with room for fewer pairs.
+    Smaller,
+    /// Quads, which need no lists.
+    Quads,
 }
 
 impl Default for PairRoom {
@@ -32,10 +51,9 @@ impl Default for PairRoom {
         Self {
             room: 0,
             most: MOST,
-            expected: 0,
             least: 0,
-            fixed: false,
-            held: None,
+            expected: Some(0),
+            growth: Growth::Free,
         }
     }
 }
@@ -47,14 +65,14 @@ impl PairRoom {
             room: pairs,
             most: pairs,
             least: pairs,
-            fixed: true,
+            growth: Growth::Fixed,
             ..Self::default()
         }
     }
 
     /// True when it does not grow.
     pub(super) fn is_fixed(&self) -> bool {
-        self.fixed
+        self.growth == Growth::Fixed
     }
 
     /// The room that scenes of `gaussians` in pictures of `tiles` usually need.
@@ -68,7 +86,7 @@ impl PairRoom {
 
     /// Room for a scene of `gaussians` in a picture of `tiles`, after a frame that had, or would have had, `needed` pairs.
     pub(super) fn make(&mut self, gaussians: u32, tiles: u32, needed: u32) {
-        if self.fixed {
+        if self.is_fixed() {
             return;
         }
         let usual = Self::usual(gaussians, tiles).min(self.most);
@@ -83,42 +101,67 @@ impl PairRoom {
     /// see more. Pairs that would not fit anyway are no reason to take memory.
     pub(super) fn expect(&mut self, estimated: u32) {
         let room = estimated.saturating_add(estimated / 2);
-        let can_grow = !self.fixed && self.held.is_none() && self.expected != NO_ESTIMATES;
+        let can_grow = self.growth == Growth::Free && self.expected.is_some();
         if room <= self.most && room > self.room && can_grow {
             self.room = room;
-            self.expected = room;
+            self.expected = Some(room);
+        }
+    }
+
+    /// Takes back room after an error for want of memory, and returns what is left to try of the frame: frames with more
+    /// pairs than there is room for are drawn as quads, where quads can draw them.
+    pub(super) fn retry(
+        &mut self,
+        error: Error,
+        budget: Option<u64>,
+        has_lists: bool,
+        can_be_quads: bool,
+    ) -> Result<Retry> {
+        match error {
+            Error::Budget(_) if self.hold(budget) => Ok(Retry::Smaller),
+            Error::Memory(_) if has_lists && (can_be_quads || self.room > LEAST) => {
+                self.refuse();
+                Ok(match can_be_quads {
+                    true => Retry::Quads,
+                    false => Retry::Smaller,
+                })
+            }
+            error => Err(error),
         }
     }
 
     /// Takes back the growth since the frame before, for which a budget has no room; there is no more as long as it is the
     /// budget. False where nothing had grown.
-    pub(super) fn hold(&mut self, budget: Option<u64>) -> bool {
+    fn hold(&mut self, budget: Option<u64>) -> bool {
         let has_grown = self.room > self.least;
         if has_grown {
             self.room = self.least;
-            self.held = budget;
+            self.growth = budget.map_or(Growth::Free, Growth::Held);
         }
         has_grown
     }
 
     /// Lets it grow again if the budget is another one.
     pub(super) fn review(&mut self, budget: Option<u64>) {
-        self.held = self.held.filter(|held| Some(*held) == budget);
+        if matches!(self.growth, Growth::Held(held) if Some(held) != budget) {
+            self.growth = Growth::Free;
+        }
     }
 
     /// True when there is no room for so many pairs, but can be. Pairs that would not fit anyway are no reason to take
     /// memory.
     pub(super) fn can_grow_to(&self, needed: u32) -> bool {
-        let grows = !self.fixed && self.held.is_none();
-        grows && needed > self.room && with_margin(needed) <= self.most
+        self.growth == Growth::Free && needed > self.room && with_margin(needed) <= self.most
     }
 
     /// Notes that the device has no memory for so many pairs. Where only an estimate has asked for them, the frames' own
     /// needs count from now on.
-    pub(super) fn refuse(&mut self) {
-        self.fixed = false;
-        if self.room == self.expected {
-            self.expected = NO_ESTIMATES;
+    fn refuse(&mut self) {
+        if self.is_fixed() {
+            self.growth = Growth::Free;
+        }
+        if self.expected == Some(self.room) {
+            self.expected = None;
         } else {
             self.most = self.room / 2;
         }
@@ -228,5 +271,28 @@ mod tests {
         pairs.refuse();
         pairs.make(1000, 500, 40_000);
         assert_eq!(pairs.room(), 25_000);
+    }
+    #[test]
+    fn a_frame_without_memory_is_tried_in_what_is_left() {
+        let memory = || Error::Memory(String::new());
+        let mut pairs = PairRoom::default();
+        pairs.make(1000, 500, 40_000);
+        let held = pairs.retry(Error::Budget(String::new()), Some(1), true, true);
+        assert_eq!(held.expect("it had grown"), Retry::Smaller);
+        assert_eq!(pairs.room(), 34_000, "the usual");
+        let quads = pairs.retry(memory(), Some(1), true, true);
+        assert_eq!(quads.expect("they need no lists"), Retry::Quads);
+        let mut tried = 0;
+        loop {
+            pairs.make(1000, 500, 0);
+            match pairs.retry(memory(), Some(1), true, false) {
+                Ok(retry) => assert_eq!(retry, Retry::Smaller),
+                Err(error) => break assert!(matches!(error, Error::Memory(_))),
+            }
+            tried += 1;
+        }
+        assert_eq!(tried, 3, "half the room each time");
+        let quads = pairs.retry(memory(), None, false, true);
+        assert!(quads.is_err(), "nothing is left");
     }
 }

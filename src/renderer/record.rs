@@ -1,5 +1,7 @@
 //! Records a configured frame into the host's command buffer: the stages, and the draws.
 
+use std::sync::Arc;
+
 use ash::vk;
 
 use super::frame::FrameState;
@@ -34,7 +36,9 @@ impl Renderer {
         depth: Option<&DepthImage>,
         frame: ConfiguredFrame,
     ) -> Result<PreparedFrame> {
-        let ConfiguredFrame { state, basis, .. } = frame;
+        let is_next =
+            frame.prepared == self.frames.prepared() && Arc::ptr_eq(&frame.pending, &self.pending);
+        let state = frame.state;
         let readable = self.desc.depth.is_some_and(|depth| depth.readable);
         if state.renderer != self.id {
             return out_of_order("prepare was given another renderer's frame");
@@ -51,7 +55,7 @@ impl Renderer {
             }
             _ => {}
         }
-        if state.decision.takes_over() && basis != self.basis() {
+        if state.decision.takes_over() && !is_next {
             return out_of_order(
                 "prepare was given a frame that takes over from another than the one before: prepare frames in the order in \
                  which they were configured, and configure again after forget()",

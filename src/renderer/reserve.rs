@@ -81,7 +81,7 @@ impl Renderer {
                 needed,
             );
             if plan.is_tiled() {
-                pairs.expect(self.estimate.last());
+                pairs.expect(self.memory.estimate.last());
             }
             plan.data.room.pair_capacity = pairs.room();
             plan

@@ -1,5 +1,6 @@
-//! Gives the shared library the name by which programs look for it: librara.so and the version of rara.h, which changes when
-//! they must be compiled anew. For the tests, lists what the header has: functions with arguments that are null, and structs.
+//! Makes `rara.h` of the sources. Gives the shared library the name by which programs look for it: librara.so and the version
+//! of the header, which changes when they must be compiled anew. For the tests, lists what the header has: functions with
+//! arguments that are null, and structs.
 
 use std::env;
 use std::fmt::Write;
@@ -16,6 +17,13 @@ fn main() {
         }
     }
     let out = PathBuf::from(env::var_os("OUT_DIR").expect("set by cargo"));
+    println!("cargo:rerun-if-changed=cbindgen.toml");
+    let config = cbindgen::Config::from_file("cbindgen.toml").expect("a configuration");
+    let header = cbindgen::Builder::new()
+        .with_config(config)
+        .with_src("lib.rs"); // with its modules
+    let header = header.generate().expect("C has all that the sources use");
+    header.write_to_file(out.join("rara.h"));
     fs::write(out.join("lists.rs"), lists(&sources)).expect("cargo's folder");
 
     let named = sources.split("RARA_ABI_VERSION: u32 = ").nth(1);

@@ -1,4 +1,4 @@
-//! `rara.h` and the library behind it: that the header is current, what a host does wrong and right, a host in C++,
+//! `rara.h` and the library behind it: the header itself, what a host does wrong and right, a host in C++,
 //! and what tools/install-c installs.
 
 #[path = "../common/canvas/mod.rs"]

@@ -8,6 +8,7 @@ use std::process::Command;
 
 use crate::compiler::{compiler, libraries, root, run};
 use crate::folder::Folder;
+use crate::header::HEADER;
 use rara::glam::DVec3;
 use rara::scene::{Bounds, Kind, generate, save_ply};
 use rara::{
@@ -29,7 +30,7 @@ fn compile(compiler: &str, out: PathBuf, library: &[&str]) -> PathBuf {
         .args(["-std=c++17", "-O1"])
         .args(warnings)
         .arg("-I")
-        .arg(root().join("src/c"))
+        .arg(HEADER)
         .arg(root().join("tools/examples/host.cpp"))
         .arg("-o")
         .arg(&out)

@@ -1,4 +1,4 @@
-// A host in C++17 with a Vulkan device of its own: a depth-tested mesh, and splats of rara among it (src/c/rara.h).
+// A host in C++17 with a Vulkan device of its own: a depth-tested mesh, and splats of rara among it.
 //   host SCENE.ply PICTURE.ppm [both|mesh|splats]
 // RARA_DEVICE: part of the device's name. RARA_VALIDATION: load the Khronos layer; any message is exit status 1.
 #include "rara.h"

@@ -6,7 +6,7 @@ use rara::ash::vk;
 use rara::glam::{Quat, Vec3};
 use rara::{Error, GaussianArrays, Gaussians, Result};
 
-use crate::boundary::{RaraResult, Versioned, guard, invalid, read, write};
+use crate::boundary::{RaraResult, guard, invalid, read, versioned, write};
 use crate::gaussians::RaraGaussians;
 use crate::handles::create;
 
@@ -47,10 +47,7 @@ pub struct RaraGaussianArrays {
     pub antialiased: vk::Bool32,
 }
 
-// SAFETY: repr(C), numbers and pointers, the size first.
-unsafe impl Versioned for RaraGaussianArrays {
-    const NAME: &'static str = "RaraGaussianArrays";
-}
+versioned!(RaraGaussianArrays);
 
 const NOTHING: RaraGaussianArrays = RaraGaussianArrays {
     struct_size: size_of::<RaraGaussianArrays>(),
@@ -75,8 +72,7 @@ pub unsafe extern "C" fn rara_gaussian_arrays_default(
     arrays: *mut RaraGaussianArrays,
     arrays_size: usize,
 ) -> RaraResult {
-    // SAFETY: the caller's promise.
-    guard(|| unsafe { write(arrays, arrays_size, &NOTHING, "arrays") })
+    guard(|| write(arrays, arrays_size, &NOTHING, "arrays"))
 }
 
 /// Copies Gaussians from a host's arrays. RARA_ERROR_INVALID names the array and, where a number in it cannot be drawn (one
@@ -87,8 +83,7 @@ pub unsafe extern "C" fn rara_gaussians_from_arrays(
     arrays: *const RaraGaussianArrays,
     gaussians: *mut *mut RaraGaussians,
 ) -> RaraResult {
-    // SAFETY: the caller's promises.
-    guard(|| unsafe {
+    guard(|| {
         create(gaussians, "gaussians", || {
             let arrays = read(arrays, NOTHING, "arrays")?;
             let gaussians = Gaussians::new(arrays.copied()?).map_err(|error| {
@@ -100,8 +95,6 @@ pub unsafe extern "C" fn rara_gaussians_from_arrays(
 }
 
 impl RaraGaussianArrays {
-    /// # Safety
-    /// The arrays are as the fields say.
     unsafe fn copied(&self) -> Result<GaussianArrays> {
         if self.sh_degree > 3 {
             return invalid(format!(
@@ -116,10 +109,7 @@ impl RaraGaussianArrays {
             count: self.count,
             name,
         };
-        let vectors = |array: Array<'_>| {
-            // SAFETY: the caller's promise.
-            unsafe { array.copied(3, 1, |to, v| to.push(Vec3::from_slice(v))) }
-        };
+        let vectors = |array: Array<'_>| array.copied(3, 1, |to, v| to.push(Vec3::from_slice(v)));
         let rotations = array(self.rotations, self.rotation_stride, "rotation");
         let opacities = array(self.opacities, self.opacity_stride, "opacity");
         let sh = array(self.sh, self.sh_stride, "sh");
@@ -127,13 +117,10 @@ impl RaraGaussianArrays {
         Ok(GaussianArrays {
             positions: vectors(array(self.positions, self.position_stride, "position"))?,
             scales: vectors(array(self.scales, self.scale_stride, "scale"))?,
-            // SAFETY: the caller's promise.
-            rotations: unsafe { rotations.copied(4, 1, |to, v| to.push(Quat::from_slice(v))) }?,
-            // SAFETY: as above.
-            opacities: unsafe { opacities.copied(1, 1, |to, v| to.push(v[0])) }?,
+            rotations: rotations.copied(4, 1, |to, v| to.push(Quat::from_slice(v)))?,
+            opacities: opacities.copied(1, 1, |to, v| to.push(v[0]))?,
             sh_degree: self.sh_degree,
-            // SAFETY: as above.
-            sh: unsafe { sh.copied(floats, floats, |to, v| to.extend_from_slice(v)) }?,
+            sh: sh.copied(floats, floats, |to, v| to.extend_from_slice(v))?,
             antialiased: self.antialiased != vk::FALSE,
         })
     }
@@ -154,9 +141,6 @@ const MOST: usize = 3 * 16;
 
 impl Array<'_> {
     /// Copies so many floats of each Gaussian, of which `put` makes so many elements.
-    ///
-    /// # Safety
-    /// The array is null, or as the fields of RaraGaussianArrays say.
     unsafe fn copied<T>(
         &self,
         floats: usize,

@@ -2,7 +2,7 @@
 
 use rara::{BakeCounts, BakeSettings, bake};
 
-use crate::boundary::{RaraResult, Versioned, guard, read, write};
+use crate::boundary::{RaraResult, guard, read, versioned, write};
 use crate::clip::RaraClip;
 use crate::gaussians::RaraGaussians;
 use crate::handles::{alive, create};
@@ -26,10 +26,7 @@ pub struct RaraBakeSettings {
     pub leave: f32,
 }
 
-// SAFETY: repr(C), plain numbers, the size first.
-unsafe impl Versioned for RaraBakeSettings {
-    const NAME: &'static str = "RaraBakeSettings";
-}
+versioned!(RaraBakeSettings);
 
 impl From<BakeSettings> for RaraBakeSettings {
     fn from(settings: BakeSettings) -> Self {
@@ -63,10 +60,7 @@ pub struct RaraBakeCounts {
     pub children: u64,
 }
 
-// SAFETY: repr(C), plain numbers, the size first.
-unsafe impl Versioned for RaraBakeCounts {
-    const NAME: &'static str = "RaraBakeCounts";
-}
+versioned!(RaraBakeCounts);
 
 impl From<BakeCounts> for RaraBakeCounts {
     fn from(counts: BakeCounts) -> Self {
@@ -89,8 +83,7 @@ pub unsafe extern "C" fn rara_bake_settings_default(
     settings_size: usize,
 ) -> RaraResult {
     let default = BakeSettings::default().into();
-    // SAFETY: the caller's promise.
-    guard(|| unsafe { write(settings, settings_size, &default, "settings") })
+    guard(|| write(settings, settings_size, &default, "settings"))
 }
 
 /// Makes Gaussians that show a cut without a clip, wherever they are drawn: those outside it are dropped, those that it
@@ -109,8 +102,7 @@ pub unsafe extern "C" fn rara_gaussians_bake(
     counts: *mut RaraBakeCounts,
     counts_size: usize,
 ) -> RaraResult {
-    // SAFETY: the caller's promises.
-    guard(|| unsafe {
+    guard(|| {
         create(baked, "baked", || {
             let gaussians = alive(gaussians, "gaussians")?;
             let clip = alive(clip, "clip")?;

@@ -111,8 +111,7 @@ pub(crate) fn invalid<T>(message: impl Into<String>) -> Result<T> {
 /// # Safety
 /// `pointer` is null, or points to a `T` that nobody changes for `'a`.
 pub(crate) unsafe fn shared<'a, T>(pointer: *const T, name: &str) -> Result<&'a T> {
-    // SAFETY: the caller's promise.
-    match unsafe { pointer.as_ref() } {
+    match pointer.as_ref() {
         Some(value) => Ok(value),
         None => invalid(format!("{name} is null")),
     }
@@ -123,8 +122,7 @@ pub(crate) unsafe fn shared<'a, T>(pointer: *const T, name: &str) -> Result<&'a 
 /// # Safety
 /// `pointer` is null, or points to a `T` that nobody else uses for `'a`.
 pub(crate) unsafe fn exclusive<'a, T>(pointer: *mut T, name: &str) -> Result<&'a mut T> {
-    // SAFETY: the caller's promise.
-    match unsafe { pointer.as_mut() } {
+    match pointer.as_mut() {
         Some(value) => Ok(value),
         None => invalid(format!("{name} is null")),
     }
@@ -139,10 +137,8 @@ pub(crate) unsafe fn list<'a, T>(first: *const T, count: usize, name: &str) -> R
         return Ok(&[]);
     }
     check_count::<T>(count, name)?;
-    // SAFETY: the caller's promise.
-    unsafe { shared(first, name) }?;
-    // SAFETY: as above, and not null.
-    Ok(unsafe { std::slice::from_raw_parts(first, count) })
+    shared(first, name)?;
+    Ok(std::slice::from_raw_parts(first, count))
 }
 
 /// Memory to be written; with a size of 0 the pointer may be null.
@@ -160,8 +156,7 @@ pub(crate) unsafe fn memory<'a>(
     check_count::<u8>(size, name)?;
     let first = NonNull::new(first.cast());
     let first = first.ok_or_else(|| Error::Invalid(format!("{name} is null")))?;
-    // SAFETY: the caller's promise.
-    Ok(unsafe { WriteOnly::new(NonNull::slice_from_raw_parts(first, size)) })
+    Ok(WriteOnly::new(NonNull::slice_from_raw_parts(first, size)))
 }
 
 fn check_count<T>(count: usize, name: &str) -> Result<()> {
@@ -190,6 +185,18 @@ pub(crate) unsafe trait Versioned: Copy {
     const NAME: &'static str;
 }
 
+/// Says of a struct that it is [`Versioned`]: it must be `repr(C)`, begin with its size, and hold only numbers, handles and
+/// pointers.
+macro_rules! versioned {
+    ($name:ident) => {
+        // SAFETY: it is as the macro asks, which tests/c/layouts.rs holds to what C compilers do.
+        unsafe impl $crate::boundary::Versioned for $name {
+            const NAME: &'static str = stringify!($name);
+        }
+    };
+}
+pub(crate) use versioned;
+
 /// True when a struct of some version, older or newer than this one, can have this size: in C the size is a multiple of
 /// the alignment, and the struct's first field holds the size.
 fn is_a_version<T: Versioned>(size: usize) -> bool {
@@ -201,11 +208,9 @@ fn is_a_version<T: Versioned>(size: usize) -> bool {
 /// # Safety
 /// `pointer` is null, or points to a size and to as many bytes as it says, the size included.
 pub(crate) unsafe fn read<T: Versioned>(pointer: *const T, default: T, name: &str) -> Result<T> {
-    // SAFETY: the caller's promise.
-    let size = *unsafe { shared(pointer.cast::<usize>(), name) }?;
+    let size = *shared(pointer.cast::<usize>(), name)?;
     check_size::<T>(size, format_args!("{name}->struct_size"))?;
-    // SAFETY: as above, and the size is no larger than a `T`'s.
-    Ok(unsafe { copied(pointer, size, default) })
+    Ok(copied(pointer, size, default))
 }
 
 /// Reads a host's structs one after the other, all of the size that the first says; fields that their version does not
@@ -223,23 +228,18 @@ pub(crate) unsafe fn read_list<T: Versioned>(
         return Ok(Vec::new());
     }
     check_count::<T>(count, name)?;
-    // SAFETY: the caller's promise.
-    let size = *unsafe { shared(first.cast::<usize>(), name) }?;
+    let size = *shared(first.cast::<usize>(), name)?;
     check_size::<T>(size, format_args!("{name}[0].struct_size"))?;
     let read = |index| {
-        // SAFETY: the caller's promise; the size is no larger than a `T`'s, and memory holds as many.
-        let (pointer, own) = unsafe {
-            let pointer = first.byte_add(index * size);
-            (pointer, *pointer.cast::<usize>())
-        };
+        let pointer = first.byte_add(index * size);
+        let own = *pointer.cast::<usize>();
         if own != size {
             return invalid(format!(
                 "{name}[{index}].struct_size is {own}, and {name}[0].struct_size is {size}: set all of them to sizeof({})",
                 T::NAME
             ));
         }
-        // SAFETY: as above.
-        Ok(unsafe { copied(pointer, size, default) })
+        Ok(copied(pointer, size, default))
     };
     (0..count).map(read).collect()
 }
@@ -265,14 +265,11 @@ fn check_size<T: Versioned>(size: usize, field: fmt::Arguments<'_>) -> Result<()
 /// `pointer` points to `size` bytes, no more than a `T` has.
 unsafe fn copied<T: Versioned>(pointer: *const T, size: usize, default: T) -> T {
     let mut value = default;
-    // SAFETY: the caller's promise; the struct may hold any bytes.
-    unsafe {
-        std::ptr::copy_nonoverlapping(
-            pointer.cast::<u8>(),
-            std::ptr::from_mut(&mut value).cast(),
-            size,
-        );
-    }
+    std::ptr::copy_nonoverlapping(
+        pointer.cast::<u8>(),
+        std::ptr::from_mut(&mut value).cast(),
+        size,
+    );
     value
 }
 
@@ -289,13 +286,9 @@ pub(crate) unsafe fn write<T: Versioned>(
     if !is_a_version::<T>(size) {
         return invalid(format!("{name} of {size} bytes: give sizeof({})", T::NAME));
     }
-    // SAFETY: the caller's promise.
-    unsafe { shared(pointer.cast_const().cast::<u8>(), name) }?;
+    shared(pointer.cast_const().cast::<u8>(), name)?;
     let size = size.min(size_of::<T>());
-    // SAFETY: as above; the size comes first.
-    unsafe {
-        std::ptr::copy_nonoverlapping(std::ptr::from_ref(value).cast(), pointer.cast::<u8>(), size);
-        pointer.cast::<usize>().write(size);
-    }
+    std::ptr::copy_nonoverlapping(std::ptr::from_ref(value).cast(), pointer.cast::<u8>(), size);
+    pointer.cast::<usize>().write(size);
     Ok(())
 }

@@ -4,7 +4,7 @@ use rara::glam::{DMat3, DMat4, DVec3};
 use rara::scene::Bounds;
 use rara::{Camera, Projection, Result};
 
-use crate::boundary::{RaraResult, Versioned, guard, invalid, list, read, write};
+use crate::boundary::{RaraResult, guard, invalid, list, read, versioned, write};
 use crate::gaussians::RaraGaussians;
 use crate::handles::alive;
 
@@ -67,10 +67,7 @@ pub struct RaraCamera {
     pub near_cut: f64,
 }
 
-// SAFETY: repr(C), plain numbers, the size first.
-unsafe impl Versioned for RaraCamera {
-    const NAME: &'static str = "RaraCamera";
-}
+versioned!(RaraCamera);
 
 impl From<Camera> for RaraCamera {
     fn from(camera: Camera) -> Self {
@@ -110,12 +107,8 @@ pub(crate) const NOWHERE: RaraCamera = RaraCamera {
 };
 
 /// Reads a host's camera.
-///
-/// # Safety
-/// `camera` is null or points to one.
 pub(crate) unsafe fn camera(camera: *const RaraCamera) -> Result<Camera> {
-    // SAFETY: the caller's promise.
-    unsafe { read(camera, NOWHERE, "camera") }?.camera()
+    read(camera, NOWHERE, "camera")?.camera()
 }
 
 impl RaraCamera {
@@ -164,13 +157,10 @@ pub unsafe extern "C" fn rara_camera_look_at(
     camera: *mut RaraCamera,
     camera_size: usize,
 ) -> RaraResult {
-    // SAFETY: the caller's promises.
-    unsafe {
-        make(camera, camera_size, || {
-            let [eye, target, up] = look(eye, target, up)?;
-            Camera::look_at(eye, target, up, fov_y, (width, height))
-        })
-    }
+    make(camera, camera_size, || {
+        let [eye, target, up] = look(eye, target, up)?;
+        Camera::look_at(eye, target, up, fov_y, (width, height))
+    })
 }
 
 /// A camera without perspective at `eye` that looks at `target`, whose picture of `width` x `height` pixels is `view_height`
@@ -186,13 +176,10 @@ pub unsafe extern "C" fn rara_camera_orthographic(
     camera: *mut RaraCamera,
     camera_size: usize,
 ) -> RaraResult {
-    // SAFETY: the caller's promises.
-    unsafe {
-        make(camera, camera_size, || {
-            let [eye, target, up] = look(eye, target, up)?;
-            Camera::orthographic(eye, target, up, view_height, (width, height))
-        })
-    }
+    make(camera, camera_size, || {
+        let [eye, target, up] = look(eye, target, up)?;
+        Camera::orthographic(eye, target, up, view_height, (width, height))
+    })
 }
 
 /// A camera from a rigid world-to-camera matrix: 16 numbers, row-major, so that the translation is in numbers 3, 7
@@ -209,13 +196,10 @@ pub unsafe extern "C" fn rara_camera_from_world_to_camera(
     camera: *mut RaraCamera,
     camera_size: usize,
 ) -> RaraResult {
-    // SAFETY: the caller's promises.
-    unsafe {
-        make(camera, camera_size, || {
-            let matrix = DMat4::from_cols_slice(list(matrix, 16, "matrix")?).transpose();
-            Camera::from_world_to_camera(matrix, (fx, fy, cx, cy), (width, height))
-        })
-    }
+    make(camera, camera_size, || {
+        let matrix = DMat4::from_cols_slice(list(matrix, 16, "matrix")?).transpose();
+        Camera::from_world_to_camera(matrix, (fx, fy, cx, cy), (width, height))
+    })
 }
 
 /// A camera that shows a scene from the front, the right and above, near enough to fill the picture. `up` and `fov_y` are
@@ -230,26 +214,19 @@ pub unsafe extern "C" fn rara_camera_frame(
     camera: *mut RaraCamera,
     camera_size: usize,
 ) -> RaraResult {
-    // SAFETY: the caller's promises.
-    unsafe {
-        make(camera, camera_size, || {
-            let bounds = Bounds::of(&alive(gaussians, "gaussians")?.gaussians);
-            Camera::frame(&bounds, vector(up, "up")?, fov_y, (width, height))
-        })
-    }
+    make(camera, camera_size, || {
+        let bounds = Bounds::of(&alive(gaussians, "gaussians")?.gaussians);
+        Camera::frame(&bounds, vector(up, "up")?, fov_y, (width, height))
+    })
 }
 
 /// Writes the camera that `made` gives.
-///
-/// # Safety
-/// `camera` is null or has room for `camera_size` bytes.
 unsafe fn make(
     camera: *mut RaraCamera,
     camera_size: usize,
     made: impl FnOnce() -> Result<Camera>,
 ) -> RaraResult {
-    // SAFETY: the caller's promise.
-    guard(|| unsafe {
+    guard(|| {
         // A struct that is null or of no version is named before anything else.
         write(camera, camera_size, &NOWHERE, "camera")?;
         write(camera, camera_size, &made()?.into(), "camera")
@@ -257,23 +234,14 @@ unsafe fn make(
 }
 
 /// The eye, the target and the upward direction of a camera.
-///
-/// # Safety
-/// Each is null or points to three numbers.
 unsafe fn look(eye: *const f64, target: *const f64, up: *const f64) -> Result<[DVec3; 3]> {
-    // SAFETY: the caller's promise.
-    unsafe {
-        Ok([
-            vector(eye, "eye")?,
-            vector(target, "target")?,
-            vector(up, "up")?,
-        ])
-    }
+    Ok([
+        vector(eye, "eye")?,
+        vector(target, "target")?,
+        vector(up, "up")?,
+    ])
 }
 
-/// # Safety
-/// `numbers` is null or points to three of them.
 pub(crate) unsafe fn vector(numbers: *const f64, name: &str) -> Result<DVec3> {
-    // SAFETY: the caller's promise.
-    Ok(DVec3::from_slice(unsafe { list(numbers, 3, name) }?))
+    Ok(DVec3::from_slice(list(numbers, 3, name)?))
 }

@@ -34,8 +34,7 @@ pub unsafe extern "C" fn rara_cameras_load(
     names: *mut RaraCameraName,
     count: *mut usize,
 ) -> RaraResult {
-    // SAFETY: the caller's promises.
-    guard(|| unsafe {
+    guard(|| {
         let count = exclusive(count, "count")?;
         let path = text::path(path, "path")?;
         let loaded = load_cameras(&path)?;

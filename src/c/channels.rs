@@ -2,7 +2,7 @@
 
 use rara::{Aov, Headless, Result, ShFormat};
 
-use crate::boundary::{RaraResult, Versioned, guard, invalid, read, write};
+use crate::boundary::{RaraResult, guard, invalid, read, versioned, write};
 use crate::camera::{self, RaraCamera};
 use crate::clip::{self, RaraClip};
 use crate::handles::alive;
@@ -54,10 +54,7 @@ pub struct RaraChannels {
     pub value_count: usize,
 }
 
-// SAFETY: repr(C), numbers and a pointer, the size first.
-unsafe impl Versioned for RaraChannels {
-    const NAME: &'static str = "RaraChannels";
-}
+versioned!(RaraChannels);
 
 impl RaraChannels {
     /// Checks the quantities, and returns them with how many numbers they have.
@@ -110,8 +107,7 @@ pub unsafe extern "C" fn rara_channels_default(
         let wanted = default.wanted();
         default.value_count = wanted.as_ref().map_or(0, |(_, count)| *count);
         // A struct that is null or of no version is named before anything else.
-        // SAFETY: the caller's promise.
-        unsafe { write(channels, channels_size, &default, "channels") }?;
+        write(channels, channels_size, &default, "channels")?;
         wanted.map(|_| ())
     })
 }
@@ -141,8 +137,7 @@ pub unsafe extern "C" fn rara_renderer_channels(
     settings: *const RaraSettings,
     channels: *const RaraChannels,
 ) -> RaraResult {
-    // SAFETY: the caller's promises.
-    guard(|| unsafe {
+    guard(|| {
         let renderer = alive(renderer, "renderer")?;
         let room = read(channels, NOWHERE, "channels")?;
         let (aovs, count) = room.wanted()?;

@@ -43,8 +43,7 @@ pub unsafe extern "C" fn rara_clip_of_planes(
     op: RaraClipOp,
     clip: *mut *mut RaraClip,
 ) -> RaraResult {
-    // SAFETY: the caller's promises.
-    guard(|| unsafe {
+    guard(|| {
         create(clip, "clip", || {
             if count > Clip::MAX_SURFACES {
                 return invalid(format!(
@@ -76,8 +75,7 @@ pub unsafe extern "C" fn rara_clip_parse(
     expression: *const c_char,
     clip: *mut *mut RaraClip,
 ) -> RaraResult {
-    // SAFETY: the caller's promises.
-    guard(|| unsafe {
+    guard(|| {
         create(clip, "clip", || {
             let expression: Expression = text(expression, "expression")?.parse()?;
             Ok(RaraClip(expression.clip()))
@@ -95,8 +93,7 @@ pub unsafe extern "C" fn rara_clip_from_json(
     name: *const c_char,
     clip: *mut *mut RaraClip,
 ) -> RaraResult {
-    // SAFETY: the caller's promises.
-    guard(|| unsafe {
+    guard(|| {
         create(clip, "clip", || {
             let path = Path::new("json");
             let clips = clips_from_json(list(json, size, "json")?, path)?;
@@ -112,8 +109,7 @@ pub unsafe extern "C" fn rara_clip_load(
     name: *const c_char,
     clip: *mut *mut RaraClip,
 ) -> RaraResult {
-    // SAFETY: the caller's promises.
-    guard(|| unsafe {
+    guard(|| {
         create(clip, "clip", || {
             let path = text::path(path, "path")?;
             named(&load_clips(&path)?, name, &path)
@@ -122,15 +118,11 @@ pub unsafe extern "C" fn rara_clip_load(
 }
 
 /// The clip of a name or, where none is called so, of a number; for null the only one.
-///
-/// # Safety
-/// `name` is null or ends in NUL.
 unsafe fn named(clips: &[NamedClip], name: *const c_char, path: &Path) -> Result<RaraClip> {
     let found = match name.is_null() {
         true => <&[NamedClip; 1]>::try_from(clips).ok().map(|[only]| only),
         false => {
-            // SAFETY: the caller's promise.
-            let name = unsafe { text(name, "name") }?;
+            let name = text(name, "name")?;
             let called = clips.iter().find(|clip| clip.name == name);
             called.or_else(|| clips.get(name.parse::<usize>().ok()?))
         }
@@ -166,8 +158,7 @@ pub unsafe extern "C" fn rara_clip_keeps(
     point: *const f64,
     kept: *mut vk::Bool32,
 ) -> RaraResult {
-    // SAFETY: the caller's promises.
-    guard(|| unsafe {
+    guard(|| {
         let kept = exclusive(kept, "kept")?;
         let clip = alive(clip, "clip")?;
         *kept = clip.0.keeps(vector(point, "point")?).into();

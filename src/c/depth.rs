@@ -4,7 +4,7 @@ use rara::ash::vk;
 use rara::gpu::DepthImage;
 use rara::{DepthDesc, DepthMap, Projection, Result};
 
-use crate::boundary::{RaraResult, Versioned, exclusive, guard, invalid, read, write};
+use crate::boundary::{RaraResult, exclusive, guard, invalid, read, versioned, write};
 use crate::camera::{RARA_PROJECTION_PERSPECTIVE, RaraProjection, projection, projection_in_c};
 
 /// The values in a depth buffer: at a depth z along the view axis, world units, it holds offset + scale / z in perspective,
@@ -43,8 +43,7 @@ pub unsafe extern "C" fn rara_depth_map_perspective(
     reversed: vk::Bool32,
     map: *mut RaraDepthMap,
 ) -> RaraResult {
-    // SAFETY: the caller's promise.
-    guard(|| unsafe {
+    guard(|| {
         let map = exclusive(map, "map")?;
         let made = match reversed {
             vk::FALSE => DepthMap::ordinary(z_near, z_far),
@@ -63,8 +62,7 @@ pub unsafe extern "C" fn rara_depth_map_orthographic(
     z_one: f64,
     map: *mut RaraDepthMap,
 ) -> RaraResult {
-    // SAFETY: the caller's promise.
-    guard(|| unsafe {
+    guard(|| {
         let map = exclusive(map, "map")?;
         let made = DepthMap::orthographic(z_zero, z_one)?;
         *map = RaraDepthMap::new(made, Projection::Orthographic);
@@ -90,10 +88,7 @@ pub struct RaraDepthDesc {
     pub map: RaraDepthMap,
 }
 
-// SAFETY: repr(C), plain numbers, the size first.
-unsafe impl Versioned for RaraDepthDesc {
-    const NAME: &'static str = "RaraDepthDesc";
-}
+versioned!(RaraDepthDesc);
 
 impl RaraDepthDesc {
     fn new(format: vk::Format, map: RaraDepthMap) -> Self {
@@ -107,8 +102,6 @@ impl RaraDepthDesc {
     }
 }
 
-/// # Safety
-/// `desc` points to one.
 pub(crate) unsafe fn depth_desc(desc: *const RaraDepthDesc) -> Result<DepthDesc> {
     let nowhere = RaraDepthMap {
         offset: 0.0,
@@ -116,8 +109,7 @@ pub(crate) unsafe fn depth_desc(desc: *const RaraDepthDesc) -> Result<DepthDesc>
         projection: RARA_PROJECTION_PERSPECTIVE,
     };
     let default = RaraDepthDesc::new(vk::Format::UNDEFINED, nowhere);
-    // SAFETY: the caller's promise.
-    let desc = unsafe { read(desc, default, "desc->depth") }?;
+    let desc = read(desc, default, "desc->depth")?;
     if desc.format == vk::Format::UNDEFINED {
         return invalid("desc->depth->format is VK_FORMAT_UNDEFINED");
     }
@@ -135,8 +127,7 @@ pub unsafe extern "C" fn rara_depth_desc_default(
     map: RaraDepthMap,
 ) -> RaraResult {
     let default = RaraDepthDesc::new(format, map);
-    // SAFETY: the caller's promise.
-    guard(|| unsafe { write(desc, desc_size, &default, "desc") })
+    guard(|| write(desc, desc_size, &default, "desc"))
 }
 
 /// A host's depth image, of one sample and created with VK_IMAGE_USAGE_TRANSFER_SRC_BIT.
@@ -161,10 +152,7 @@ pub struct RaraDepthImage {
     pub y: i32,
 }
 
-// SAFETY: repr(C), a handle and numbers, the size first.
-unsafe impl Versioned for RaraDepthImage {
-    const NAME: &'static str = "RaraDepthImage";
-}
+versioned!(RaraDepthImage);
 
 impl RaraDepthImage {
     fn new(image: vk::Image, width: u32, height: u32) -> Self {
@@ -191,16 +179,12 @@ pub unsafe extern "C" fn rara_depth_image_default(
     height: u32,
 ) -> RaraResult {
     let default = RaraDepthImage::new(image, width, height);
-    // SAFETY: the caller's promise.
-    guard(|| unsafe { write(depth, depth_size, &default, "depth") })
+    guard(|| write(depth, depth_size, &default, "depth"))
 }
 
-/// # Safety
-/// `image` is null or points to one.
 pub(crate) unsafe fn depth_image(image: *const RaraDepthImage) -> Result<DepthImage> {
     let default = RaraDepthImage::new(vk::Image::null(), 0, 0);
-    // SAFETY: the caller's promise.
-    let image = unsafe { read(image, default, "depth") }?;
+    let image = read(image, default, "depth")?;
     if image.image == vk::Image::null() {
         return invalid("depth->image is null");
     }

@@ -8,7 +8,7 @@ use rara::ash::{self, vk};
 use rara::gpu::{AdoptDesc, Device, DeviceShape};
 use rara::{Error, Result};
 
-use crate::boundary::{RaraResult, Versioned, guard, invalid, read, write};
+use crate::boundary::{RaraResult, guard, invalid, read, versioned, write};
 use crate::handles::{create, destroy, number};
 use crate::lent::{Lender, RaraAllocate, RaraFree};
 
@@ -82,10 +82,7 @@ pub struct RaraAdoptDesc {
     pub allocator_user: *mut c_void,
 }
 
-// SAFETY: repr(C), handles, numbers and pointers, of which null is none, the size first.
-unsafe impl Versioned for RaraAdoptDesc {
-    const NAME: &'static str = "RaraAdoptDesc";
-}
+versioned!(RaraAdoptDesc);
 
 impl RaraAdoptDesc {
     fn new() -> Self {
@@ -145,8 +142,7 @@ pub unsafe extern "C" fn rara_adopt_desc_default(
     desc: *mut RaraAdoptDesc,
     desc_size: usize,
 ) -> RaraResult {
-    // SAFETY: the caller's promise.
-    guard(|| unsafe { write(desc, desc_size, &RaraAdoptDesc::new(), "desc") })
+    guard(|| write(desc, desc_size, &RaraAdoptDesc::new(), "desc"))
 }
 
 /// Works with the host's device. Nothing in `desc` is ever destroyed, and only rara_scene_buffers_upload,
@@ -162,8 +158,7 @@ pub unsafe extern "C" fn rara_device_adopt(
     desc: *const RaraAdoptDesc,
     device: *mut *mut RaraDevice,
 ) -> RaraResult {
-    // SAFETY: the caller's promises.
-    guard(|| unsafe {
+    guard(|| {
         create(device, "device", || {
             let desc = read(desc, RaraAdoptDesc::new(), "desc")?;
             let instance = load_instance(
@@ -219,9 +214,6 @@ fn shape(desc: &RaraAdoptDesc) -> Result<Option<DeviceShape>> {
 }
 
 /// The instance's functions. Those of Vulkan 1.1 must be there: ash would abort where one is missing.
-///
-/// # Safety
-/// The handles are null, or belong together and are alive.
 pub(crate) unsafe fn load_instance(
     get_instance_proc_addr: PFN_vkGetInstanceProcAddr,
     instance: vk::Instance,
@@ -252,14 +244,10 @@ pub(crate) unsafe fn load_instance(
     let functions = ash::StaticFn {
         get_instance_proc_addr,
     };
-    // SAFETY: as above.
-    Ok(unsafe { ash::Instance::load(&functions, instance) })
+    Ok(ash::Instance::load(&functions, instance))
 }
 
 /// The device's functions. Device::adopt checks that it has those of the extensions that the host says it has enabled.
-///
-/// # Safety
-/// The handles of the description are null, or belong together and are alive.
 unsafe fn load_device(instance: &ash::Instance, desc: &RaraAdoptDesc) -> Result<ash::Device> {
     if desc.device == vk::Device::null() {
         return invalid("desc->device is null");

@@ -40,8 +40,8 @@ impl RaraFrame {
 /// rara_renderer_draw sets. A null `clip` clips nothing, null `settings` are the defaults.
 ///
 /// # Safety
-/// `renderer` and `scene` are alive and of one device; no other thread uses `renderer`; the other pointers are null or
-/// point to what they say; `frame` may be overwritten. The host has waited for the frames that RaraRenderer says.
+/// `renderer` and `scene` are of one device, and no other thread uses `renderer`. The host has waited for the frames that
+/// RaraRenderer says.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_renderer_configure(
     renderer: *mut RaraRenderer,
@@ -51,8 +51,7 @@ pub unsafe extern "C" fn rara_renderer_configure(
     settings: *const RaraSettings,
     frame: *mut *mut RaraFrame,
 ) -> RaraResult {
-    // SAFETY: the caller's promises.
-    guard(|| unsafe {
+    guard(|| {
         create(frame, "frame", || {
             let mut renderer = alone(renderer, "renderer")?;
             let scene = alive(scene, "scene")?;
@@ -87,8 +86,7 @@ pub unsafe extern "C" fn rara_renderer_prepare(
     depth: *const RaraDepthImage,
     frame: *mut RaraFrame,
 ) -> RaraResult {
-    // SAFETY: the caller's promises.
-    guard(|| unsafe {
+    guard(|| {
         let mut renderer = alone(renderer, "renderer")?;
         let scene = alive(scene, "scene")?;
         let mut frame = alone(frame, "frame")?;
@@ -131,8 +129,7 @@ pub unsafe extern "C" fn rara_renderer_draw(
     y: f32,
     frame: *const RaraFrame,
 ) -> RaraResult {
-    // SAFETY: the caller's promises.
-    with_prepared(renderer, cmd, frame, |renderer, frame| unsafe {
+    with_prepared(renderer, cmd, frame, |renderer, frame| {
         renderer.draw(cmd, [x, y], frame)
     })
 }
@@ -166,8 +163,7 @@ pub unsafe extern "C" fn rara_renderer_draw_depth(
     y: f32,
     frame: *const RaraFrame,
 ) -> RaraResult {
-    // SAFETY: the caller's promises.
-    with_prepared(renderer, cmd, frame, |renderer, frame| unsafe {
+    with_prepared(renderer, cmd, frame, |renderer, frame| {
         renderer.draw_depth(cmd, [x, y], frame)
     })
 }

@@ -7,7 +7,7 @@ use rara::Gaussians;
 use rara::ash::vk;
 use rara::scene::{Bounds, LoadReport, Loaded, Property, load, load_from};
 
-use crate::boundary::{RaraResult, Versioned, guard, invalid, list, write};
+use crate::boundary::{RaraResult, guard, invalid, list, versioned, write};
 use crate::handles::{alive, alone, create, destroy};
 use crate::numbering::Part;
 use crate::text;
@@ -66,10 +66,7 @@ pub struct RaraGaussiansInfo {
     pub antialiased: vk::Bool32,
 }
 
-// SAFETY: repr(C), plain numbers, the size first.
-unsafe impl Versioned for RaraGaussiansInfo {
-    const NAME: &'static str = "RaraGaussiansInfo";
-}
+versioned!(RaraGaussiansInfo);
 
 /// Loads a scene: 3DGS .ply (ascii or binary, spherical harmonics of degree 0 to 3), .compressed.ply, .splat, .ksplat, .spz,
 /// SOG (an archive, its folder or meta.json) or glTF with KHR_gaussian_splatting. The format is found by what is in the file.
@@ -80,8 +77,7 @@ pub unsafe extern "C" fn rara_gaussians_load(
     path: *const c_char,
     gaussians: *mut *mut RaraGaussians,
 ) -> RaraResult {
-    // SAFETY: the caller's promises.
-    guard(|| unsafe {
+    guard(|| {
         create(gaussians, "gaussians", || {
             let path = text::path(path, "path")?;
             load(&path, &mut |_, _| ()).map(RaraGaussians::from)
@@ -98,8 +94,7 @@ pub unsafe extern "C" fn rara_gaussians_load_from(
     name: *const c_char,
     gaussians: *mut *mut RaraGaussians,
 ) -> RaraResult {
-    // SAFETY: the caller's promises.
-    guard(|| unsafe {
+    guard(|| {
         create(gaussians, "gaussians", || {
             let name = text::path(name, "name")?;
             let source = Cursor::new(list(data, size, "data")?);
@@ -176,8 +171,7 @@ pub unsafe extern "C" fn rara_gaussians_info(
             bounds_max: bounds.max.into(),
             antialiased: gaussians.is_antialiased().into(),
         };
-        // SAFETY: the caller's promise.
-        unsafe { write(info, info_size, &found, "info") }
+        write(info, info_size, &found, "info")
     })
 }
 

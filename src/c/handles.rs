@@ -32,16 +32,12 @@ fn handles() -> MutexGuard<'static, Handles> {
 }
 
 /// Makes a handle: `*out` is null if `make` fails.
-///
-/// # Safety
-/// `out` is null, or points to a pointer that may be overwritten.
 pub(crate) unsafe fn create<T: Send + Sync + 'static>(
     out: *mut *mut T,
     name: &str,
     make: impl FnOnce() -> Result<T>,
 ) -> Result<()> {
-    // SAFETY: the caller's promise.
-    let out = unsafe { exclusive(out, name) }?;
+    let out = exclusive(out, name)?;
     *out = std::ptr::null_mut();
     *out = add(make()?)?;
     Ok(())

@@ -6,7 +6,7 @@ use std::ptr::null;
 use rara::ash::vk;
 use rara::{Error, LayerState, Result};
 
-use crate::boundary::{RaraResult, Versioned, guard, invalid, read, read_list, write};
+use crate::boundary::{RaraResult, guard, invalid, read, read_list, versioned, write};
 use crate::clip::{self, RaraClip};
 use crate::device::RaraDevice;
 use crate::gaussians::RaraGaussians;
@@ -32,10 +32,7 @@ pub struct RaraLayerState {
     pub visible: vk::Bool32,
 }
 
-// SAFETY: repr(C), plain numbers, the size first.
-unsafe impl Versioned for RaraLayerState {
-    const NAME: &'static str = "RaraLayerState";
-}
+versioned!(RaraLayerState);
 
 impl From<LayerState> for RaraLayerState {
     fn from(state: LayerState) -> Self {
@@ -49,13 +46,9 @@ impl From<LayerState> for RaraLayerState {
 }
 
 /// Reads the state that a host gives; `layer` is the name of the layer that it is for.
-///
-/// # Safety
-/// `state` is null, or points to one.
 unsafe fn state(state: *const RaraLayerState, name: &str, layer: &str) -> Result<LayerState> {
     let default = LayerState::default();
-    // SAFETY: the caller's promise.
-    let given = unsafe { read(state, default.into(), name) }?;
+    let given = read(state, default.into(), name)?;
     let made = given.placement.placement().and_then(|placement| {
         let made = default
             .placement(placement)
@@ -83,10 +76,7 @@ pub struct RaraLayer {
     pub clip: *const RaraClip,
 }
 
-// SAFETY: repr(C), a number, pointers and handles, the size first.
-unsafe impl Versioned for RaraLayer {
-    const NAME: &'static str = "RaraLayer";
-}
+versioned!(RaraLayer);
 
 impl RaraLayer {
     fn new(name: *const c_char, gaussians: *const RaraGaussians) -> Self {
@@ -100,12 +90,8 @@ impl RaraLayer {
     }
 
     /// Reads the layer; `place` names it in messages.
-    ///
-    /// # Safety
-    /// Its pointers are null, or point to what their fields say.
     unsafe fn layer(&self, place: &str) -> Result<GivenLayer> {
-        // SAFETY: the caller's promise.
-        let name = unsafe { text(self.name, &format!("{place}.name")) }?;
+        let name = text(self.name, &format!("{place}.name"))?;
         let mut layer = GivenLayer {
             gaussians: alive(self.gaussians, &format!("{place}.gaussians"))?,
             name: name.to_owned(),
@@ -113,15 +99,12 @@ impl RaraLayer {
             clip: clip::clip(self.clip, &format!("{place}.clip"))?,
         };
         if !self.state.is_null() {
-            // SAFETY: as above.
-            layer.state = unsafe { state(self.state, &format!("{place}.state"), name) }?;
+            layer.state = state(self.state, &format!("{place}.state"), name)?;
         }
         Ok(layer)
     }
 }
 
-/// # Safety
-/// `layers` is null, or points to `layer_count` layers, which are as their fields say.
 pub(crate) unsafe fn given(
     layers: *const RaraLayer,
     layer_count: usize,
@@ -129,18 +112,14 @@ pub(crate) unsafe fn given(
     if layer_count == 0 {
         return invalid("layer_count is 0, and a scene has at least one layer: give one or more");
     }
-    // SAFETY: the caller's promise.
-    let layers = unsafe {
-        read_list(
-            layers,
-            layer_count,
-            RaraLayer::new(null(), null()),
-            "layers",
-        )
-    }?;
+    let layers = read_list(
+        layers,
+        layer_count,
+        RaraLayer::new(null(), null()),
+        "layers",
+    )?;
     let layers = layers.iter().enumerate();
-    // SAFETY: as above.
-    let made = layers.map(|(index, layer)| unsafe { layer.layer(&format!("layers[{index}]")) });
+    let made = layers.map(|(index, layer)| layer.layer(&format!("layers[{index}]")));
     made.collect()
 }
 
@@ -152,8 +131,7 @@ pub unsafe extern "C" fn rara_layer_state_default(
     state_size: usize,
 ) -> RaraResult {
     let default = LayerState::default().into();
-    // SAFETY: the caller's promise.
-    guard(|| unsafe { write(state, state_size, &default, "state") })
+    guard(|| write(state, state_size, &default, "state"))
 }
 
 /// A layer of Gaussians in the default state; `layer` keeps both pointers as they are. `layer_size` is sizeof *layer.
@@ -165,8 +143,7 @@ pub unsafe extern "C" fn rara_layer_default(
     gaussians: *const RaraGaussians,
 ) -> RaraResult {
     let default = RaraLayer::new(name, gaussians);
-    // SAFETY: the caller's promise.
-    guard(|| unsafe { write(layer, layer_size, &default, "layer") })
+    guard(|| write(layer, layer_size, &default, "layer"))
 }
 
 /// Uploads a scene of several layers as rara_scene_buffers_upload does one of a single layer. The layers are sorted and
@@ -184,8 +161,7 @@ pub unsafe extern "C" fn rara_scene_buffers_upload_layers(
     sh_format: RaraShFormat,
     scene: *mut *mut RaraSceneBuffers,
 ) -> RaraResult {
-    // SAFETY: the caller's promises.
-    unsafe { scene::upload(device, sh_format, scene, || given(layers, layer_count)) }
+    scene::upload(device, sh_format, scene, || given(layers, layer_count))
 }
 
 /// Bytes of staging memory that rara_scene_buffers_upload_layers_with needs for a scene.
@@ -196,8 +172,7 @@ pub unsafe extern "C" fn rara_scene_buffers_staging_bytes_of_layers(
     sh_format: RaraShFormat,
     bytes: *mut u64,
 ) -> RaraResult {
-    // SAFETY: the caller's promises.
-    unsafe { scene::staging_bytes(sh_format, bytes, || given(layers, layer_count)) }
+    scene::staging_bytes(sh_format, bytes, || given(layers, layer_count))
 }
 
 /// Uploads a scene of several layers as rara_scene_buffers_upload_with does one of a single layer. `layers` and what they
@@ -215,12 +190,9 @@ pub unsafe extern "C" fn rara_scene_buffers_upload_layers_with(
     sh_format: RaraShFormat,
     scene: *mut *mut RaraSceneBuffers,
 ) -> RaraResult {
-    // SAFETY: the caller's promises.
-    unsafe {
-        scene::upload_with(device, cmd, staging, sh_format, scene, || {
-            given(layers, layer_count)
-        })
-    }
+    scene::upload_with(device, cmd, staging, sh_format, scene, || {
+        given(layers, layer_count)
+    })
 }
 
 /// The state of a layer, as it was uploaded or last set; its rotation has length one. `state_size` is sizeof *state.
@@ -235,8 +207,7 @@ pub unsafe extern "C" fn rara_scene_buffers_layer_state(
         let scene = alive(scene, "scene")?;
         check_index(&scene, index)?;
         let found = scene.buffers.layers()[index].state().into();
-        // SAFETY: the caller's promise.
-        unsafe { write(state, state_size, &found, "state") }
+        write(state, state_size, &found, "state")
     })
 }
 
@@ -253,8 +224,7 @@ pub unsafe extern "C" fn rara_scene_buffers_set_layer_state(
         let mut scene = alone(scene, "scene")?;
         check_index(&scene, index)?;
         let name = scene.buffers.layers()[index].name().to_owned();
-        // SAFETY: the caller's promise.
-        let state = unsafe { self::state(state, "state", &name) }?;
+        let state = self::state(state, "state", &name)?;
         scene.buffers.set_layer_state(index, state)
     })
 }

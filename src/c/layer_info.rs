@@ -4,7 +4,7 @@ use std::ffi::c_char;
 
 use rara::Result;
 
-use crate::boundary::{RaraResult, Versioned, exclusive, guard, invalid, write};
+use crate::boundary::{RaraResult, exclusive, guard, invalid, versioned, write};
 use crate::handles::{alive, number};
 use crate::scene::RaraSceneBuffers;
 use crate::text::text;
@@ -22,10 +22,7 @@ pub struct RaraLayerInfo {
     pub count: u64,
 }
 
-// SAFETY: repr(C), numbers and a pointer, the size first.
-unsafe impl Versioned for RaraLayerInfo {
-    const NAME: &'static str = "RaraLayerInfo";
-}
+versioned!(RaraLayerInfo);
 
 /// How many layers a scene has, one or more; 0 for null.
 #[unsafe(no_mangle)]
@@ -60,8 +57,7 @@ pub unsafe extern "C" fn rara_scene_buffers_layer_info(
             name: scene.names[index].as_ptr(),
             count: scene.buffers.layers()[index].gaussians().into(),
         };
-        // SAFETY: the caller's promise.
-        unsafe { write(info, info_size, &found, "info") }
+        write(info, info_size, &found, "info")
     })
 }
 
@@ -73,8 +69,7 @@ pub unsafe extern "C" fn rara_scene_buffers_layer_by_name(
     name: *const c_char,
     index: *mut usize,
 ) -> RaraResult {
-    // SAFETY: the caller's promises.
-    guard(|| unsafe {
+    guard(|| {
         let scene = alive(scene, "scene")?;
         let (name, index) = (text(name, "name")?, exclusive(index, "index")?);
         *index = scene.buffers.layer_index(name)?;

@@ -9,7 +9,8 @@
 //! many values as the count beside them says; strings end in NUL; what a call fills may be overwritten, and a `..._size` is
 //! its room in bytes. A function that asks for more says so.
 
-#![allow(clippy::missing_safety_doc)] // it is said above
+// The promises are said above, and nearly all that a function does relies on them.
+#![allow(clippy::missing_safety_doc, unsafe_op_in_unsafe_fn)]
 
 #[cfg(not(panic = "unwind"))]
 compile_error!("rara-c stops panics at its boundary, and needs panic = \"unwind\" for that");

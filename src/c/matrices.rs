@@ -4,7 +4,7 @@ use rara::ash::vk;
 use rara::glam::{DMat4, Mat4};
 use rara::{Camera, Ndc, Result};
 
-use crate::boundary::{RaraResult, Versioned, exclusive, guard, invalid, list, read, write};
+use crate::boundary::{RaraResult, exclusive, guard, invalid, list, read, versioned, write};
 use crate::camera::{NOWHERE, RaraCamera};
 use crate::depth::RaraDepthMap;
 
@@ -36,10 +36,7 @@ pub struct RaraNdc {
     pub reversed: vk::Bool32,
 }
 
-// SAFETY: repr(C), plain numbers, the size first.
-unsafe impl Versioned for RaraNdc {
-    const NAME: &'static str = "RaraNdc";
-}
+versioned!(RaraNdc);
 
 const VULKAN: RaraNdc = RaraNdc {
     struct_size: size_of::<RaraNdc>(),
@@ -53,8 +50,7 @@ const VULKAN: RaraNdc = RaraNdc {
 /// *ndc.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_ndc_default(ndc: *mut RaraNdc, ndc_size: usize) -> RaraResult {
-    // SAFETY: the caller's promise.
-    guard(|| unsafe { write(ndc, ndc_size, &VULKAN, "ndc") })
+    guard(|| write(ndc, ndc_size, &VULKAN, "ndc"))
 }
 
 /// The camera of a host's matrices of 16 numbers each, whose rotation has a mirror in it where the world is left-handed, and
@@ -81,8 +77,7 @@ pub unsafe extern "C" fn rara_camera_of_projection(
     camera_size: usize,
     map: *mut RaraDepthMap,
 ) -> RaraResult {
-    // SAFETY: the caller's promises.
-    guard(|| unsafe {
+    guard(|| {
         let matrices = [(view, "view"), (projection, "projection")]
             .map(|(numbers, name)| list(numbers, 16, name).map(DMat4::from_cols_slice));
         of_projection(matrices, ndc, (width, height), (camera, camera_size), map)
@@ -101,8 +96,7 @@ pub unsafe extern "C" fn rara_camera_of_projection_floats(
     camera_size: usize,
     map: *mut RaraDepthMap,
 ) -> RaraResult {
-    // SAFETY: the caller's promises.
-    guard(|| unsafe {
+    guard(|| {
         let wide = |numbers: &[f32]| Mat4::from_cols_slice(numbers).as_dmat4();
         let matrices = [(view, "view"), (projection, "projection")]
             .map(|(numbers, name)| list(numbers, 16, name).map(wide));
@@ -120,12 +114,10 @@ unsafe fn of_projection(
     map: *mut RaraDepthMap,
 ) -> Result<()> {
     // A struct that is null or of no version is named before anything else.
-    // SAFETY: the caller's promise.
-    unsafe { write(camera, camera_size, &NOWHERE, "camera") }?;
+    write(camera, camera_size, &NOWHERE, "camera")?;
     let ndc = match ndc.is_null() {
         true => VULKAN,
-        // SAFETY: the caller's promise.
-        false => unsafe { read(ndc, VULKAN, "ndc") }?,
+        false => read(ndc, VULKAN, "ndc")?,
     };
     let ordered = |matrix: DMat4| match ndc.order {
         RARA_MATRIX_ORDER_TRANSLATION_LAST => Ok(matrix),
@@ -138,12 +130,9 @@ unsafe fn of_projection(
         .reversed(ndc.reversed != 0);
     let (view, projection) = (ordered(view?)?, ordered(projection?)?);
     let (made, depth) = Camera::of_projection(view, projection, space, size)?;
-    // SAFETY: the caller's promises.
-    unsafe {
-        write(camera, camera_size, &made.into(), "camera")?;
-        if !map.is_null() {
-            *exclusive(map, "map")? = RaraDepthMap::new(depth, made.projection);
-        }
+    write(camera, camera_size, &made.into(), "camera")?;
+    if !map.is_null() {
+        *exclusive(map, "map")? = RaraDepthMap::new(depth, made.projection);
     }
     Ok(())
 }

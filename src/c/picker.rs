@@ -47,8 +47,7 @@ pub unsafe extern "C" fn rara_picker_create(
     in_flight: u32,
     picker: *mut *mut RaraPicker,
 ) -> RaraResult {
-    // SAFETY: the caller's promises.
-    guard(|| unsafe {
+    guard(|| {
         create(picker, "picker", || {
             let renderer = alive(renderer, "renderer")?;
             Ok(RaraPicker(Picker::new(&renderer.0, in_flight)?))
@@ -62,8 +61,7 @@ pub unsafe extern "C" fn rara_picker_set_placement(
     picker: *mut RaraPicker,
     placement: *const RaraPlacement,
 ) -> RaraResult {
-    // SAFETY: the caller's promises.
-    guard(|| unsafe {
+    guard(|| {
         let mut picker = alone(picker, "picker")?;
         let placement = shared(placement, "placement")?.placement()?;
         picker.0.set_placement(placement);
@@ -95,8 +93,7 @@ pub unsafe extern "C" fn rara_picker_record(
     height: u32,
     ticket: *mut RaraPickTicket,
 ) -> RaraResult {
-    // SAFETY: the caller's promises.
-    guard(|| unsafe {
+    guard(|| {
         let ticket = exclusive(ticket, "ticket")?;
         let mut picker = alone(picker, "picker")?;
         let scene = alive(scene, "scene")?;
@@ -133,8 +130,7 @@ pub unsafe extern "C" fn rara_picker_read(
     pick_count: usize,
     answered: *mut vk::Bool32,
 ) -> RaraResult {
-    // SAFETY: the caller's promises.
-    guard(|| unsafe {
+    guard(|| {
         let answered = exclusive(answered, "answered")?;
         *answered = vk::FALSE;
         let picker = alive(picker, "picker")?;

@@ -50,8 +50,7 @@ pub unsafe extern "C" fn rara_renderer_set_placement(
     renderer: *mut RaraRenderer,
     placement: *const RaraPlacement,
 ) -> RaraResult {
-    // SAFETY: the caller's promises.
-    guard(|| unsafe {
+    guard(|| {
         let mut renderer = alone(renderer, "renderer")?;
         let placement = shared(placement, "placement")?.placement()?;
         renderer.0.set_placement(placement);

@@ -46,8 +46,7 @@ pub unsafe extern "C" fn rara_renderer_create(
     desc: *const RaraRendererDesc,
     renderer: *mut *mut RaraRenderer,
 ) -> RaraResult {
-    // SAFETY: the caller's promises.
-    guard(|| unsafe {
+    guard(|| {
         create(renderer, "renderer", || {
             let device = alive(device, "device")?;
             Renderer::new(&device.0, renderer_desc(desc)?).map(RaraRenderer)
@@ -63,8 +62,7 @@ pub unsafe extern "C" fn rara_renderer_create_sharing(
     desc: *const RaraRendererDesc,
     renderer: *mut *mut RaraRenderer,
 ) -> RaraResult {
-    // SAFETY: the caller's promises.
-    guard(|| unsafe {
+    guard(|| {
         create(renderer, "renderer", || {
             let other = alive(other, "other")?;
             other.0.sharing(renderer_desc(desc)?).map(RaraRenderer)
@@ -79,8 +77,7 @@ pub unsafe extern "C" fn rara_renderer_set_depth_map(
     map: *const RaraDepthMap,
 ) -> RaraResult {
     with(renderer, |renderer| {
-        // SAFETY: the caller's promise.
-        renderer.set_depth_map(unsafe { shared(map, "map") }?.map()?)
+        renderer.set_depth_map(shared(map, "map")?.map()?)
     })
 }
 

@@ -4,7 +4,7 @@ use rara::ash::vk;
 use rara::gpu::{Bindings, Target};
 use rara::{ColorSpace, ExpectedDepthDesc, RendererDesc, Result};
 
-use crate::boundary::{RaraResult, Versioned, guard, invalid, read, write};
+use crate::boundary::{RaraResult, guard, invalid, read, versioned, write};
 use crate::depth::{self, RaraDepthDesc};
 
 /// How shaders reach buffers.
@@ -65,10 +65,7 @@ pub struct RaraRendererDesc {
     pub color_space: RaraColorSpace,
 }
 
-// SAFETY: repr(C), numbers, handles and a pointer, the size first.
-unsafe impl Versioned for RaraRendererDesc {
-    const NAME: &'static str = "RaraRendererDesc";
-}
+versioned!(RaraRendererDesc);
 
 impl RaraRendererDesc {
     fn new(color_format: vk::Format) -> Self {
@@ -97,16 +94,14 @@ unsafe fn target(render_pass: vk::RenderPass, subpass: u32) -> Target {
     if render_pass == vk::RenderPass::null() {
         return Target::DYNAMIC;
     }
-    // SAFETY: the caller's promise.
-    unsafe { Target::render_pass(render_pass, subpass) }
+    Target::render_pass(render_pass, subpass)
 }
 
 /// # Safety
 /// `desc` is null or points to one, whose depth is null or points to one, and whose render pass is as its field says.
 pub(crate) unsafe fn renderer_desc(desc: *const RaraRendererDesc) -> Result<RendererDesc> {
     let default = RaraRendererDesc::new(vk::Format::UNDEFINED);
-    // SAFETY: the caller's promise.
-    let desc = unsafe { read(desc, default, "desc") }?;
+    let desc = read(desc, default, "desc")?;
     if desc.color_format == vk::Format::UNDEFINED {
         return invalid("desc->color_format is VK_FORMAT_UNDEFINED");
     }
@@ -116,14 +111,12 @@ pub(crate) unsafe fn renderer_desc(desc: *const RaraRendererDesc) -> Result<Rend
     let depth = if desc.depth.is_null() {
         None
     } else {
-        // SAFETY: the caller's promise.
-        Some(unsafe { depth::depth_desc(desc.depth) }?)
+        Some(depth::depth_desc(desc.depth)?)
     };
     let expects_depth = desc.expected_depth_format != vk::Format::UNDEFINED;
     let expected_depth = expects_depth.then(|| {
         let (pass, subpass) = (desc.expected_depth_render_pass, desc.expected_depth_subpass);
-        // SAFETY: the caller's promise.
-        let target = unsafe { target(pass, subpass) };
+        let target = target(pass, subpass);
         ExpectedDepthDesc::new(desc.expected_depth_format).target(target)
     });
     let bindings = match desc.bindings {
@@ -137,8 +130,7 @@ pub(crate) unsafe fn renderer_desc(desc: *const RaraRendererDesc) -> Result<Rend
         RARA_COLOR_SPACE_LINEAR => ColorSpace::Linear,
         other => return invalid(format!("desc->color_space {other} is no RaraColorSpace")),
     };
-    // SAFETY: the caller's promise.
-    let target = unsafe { target(desc.render_pass, desc.subpass) };
+    let target = target(desc.render_pass, desc.subpass);
     // Statistics stay off: they need a device that rara has opened itself.
     Ok(RendererDesc::new(desc.color_format)
         .color_space(color_space)
@@ -161,6 +153,5 @@ pub unsafe extern "C" fn rara_renderer_desc_default(
     color_format: vk::Format,
 ) -> RaraResult {
     let default = RaraRendererDesc::new(color_format);
-    // SAFETY: the caller's promise.
-    guard(|| unsafe { write(desc, desc_size, &default, "desc") })
+    guard(|| write(desc, desc_size, &default, "desc"))
 }

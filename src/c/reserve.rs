@@ -2,7 +2,7 @@
 
 use rara::{FrameLimits, Preset, Result, Settings};
 
-use crate::boundary::{RaraResult, Versioned, exclusive, guard, read, read_list, write};
+use crate::boundary::{RaraResult, exclusive, guard, read, read_list, versioned, write};
 use crate::camera::{self, RaraCamera};
 use crate::device::RaraDevice;
 use crate::frame::RaraFrame;
@@ -43,10 +43,7 @@ pub struct RaraFrameLimits {
     pub settings_count: usize,
 }
 
-// SAFETY: repr(C), numbers and a pointer, the size first.
-unsafe impl Versioned for RaraFrameLimits {
-    const NAME: &'static str = "RaraFrameLimits";
-}
+versioned!(RaraFrameLimits);
 
 impl RaraFrameLimits {
     fn new(width: u32, height: u32, gaussians: u32) -> Self {
@@ -66,13 +63,10 @@ impl RaraFrameLimits {
         }
     }
 
-    /// # Safety
-    /// `settings` is null, or points to `settings_count` of them.
     unsafe fn limits(&self) -> Result<FrameLimits> {
         let default = RaraSettings::new(Preset::default());
         let (first, count) = (self.settings, self.settings_count);
-        // SAFETY: the caller's promise.
-        let given = unsafe { read_list(first, count, default, "limits->settings") }?;
+        let given = read_list(first, count, default, "limits->settings")?;
         let settings: Vec<Settings> = given
             .iter()
             .map(RaraSettings::settings)
@@ -101,8 +95,7 @@ pub unsafe extern "C" fn rara_frame_limits_default(
     gaussians: u32,
 ) -> RaraResult {
     let default = RaraFrameLimits::new(width, height, gaussians);
-    // SAFETY: the caller's promise.
-    guard(|| unsafe { write(limits, limits_size, &default, "limits") })
+    guard(|| write(limits, limits_size, &default, "limits"))
 }
 
 /// Compiles the pipelines and allocates the working memory of all frames within limits: rara_renderer_configure then
@@ -118,8 +111,7 @@ pub unsafe extern "C" fn rara_renderer_reserve(
     renderer: *mut RaraRenderer,
     limits: *const RaraFrameLimits,
 ) -> RaraResult {
-    // SAFETY: the caller's promises.
-    with(renderer, |renderer| unsafe {
+    with(renderer, |renderer| {
         let limits = read(limits, RaraFrameLimits::new(1, 1, 0), "limits")?;
         renderer.reserve(&limits.limits()?)
     })
@@ -158,8 +150,7 @@ pub unsafe extern "C" fn rara_scene_buffers_estimated_pairs(
     camera: *const RaraCamera,
     pairs: *mut u32,
 ) -> RaraResult {
-    // SAFETY: the caller's promises.
-    guard(|| unsafe {
+    guard(|| {
         let pairs = exclusive(pairs, "pairs")?;
         let scene = alive(scene, "scene")?;
         let camera = camera::camera(camera)?;
@@ -186,10 +177,7 @@ pub struct RaraDeviceMemory {
     pub pipeline_count: u64,
 }
 
-// SAFETY: repr(C), plain numbers, the size first.
-unsafe impl Versioned for RaraDeviceMemory {
-    const NAME: &'static str = "RaraDeviceMemory";
-}
+versioned!(RaraDeviceMemory);
 
 /// The device memory that rara has allocated, and the pipelines that it has compiled. `memory_size` is sizeof *memory.
 #[unsafe(no_mangle)]
@@ -208,8 +196,7 @@ pub unsafe extern "C" fn rara_device_memory(
             allocation_count: device.allocation_count(),
             pipeline_count: device.pipeline_count(),
         };
-        // SAFETY: the caller's promise.
-        unsafe { write(memory, memory_size, &found, "memory") }
+        write(memory, memory_size, &found, "memory")
     })
 }
 

@@ -65,8 +65,7 @@ pub unsafe extern "C" fn rara_scene_buffers_upload(
     sh_format: RaraShFormat,
     scene: *mut *mut RaraSceneBuffers,
 ) -> RaraResult {
-    // SAFETY: the caller's promises.
-    unsafe { upload(device, sh_format, scene, || one_layer(gaussians)) }
+    upload(device, sh_format, scene, || one_layer(gaussians))
 }
 
 /// A layer of a scene that is to be uploaded.
@@ -125,8 +124,7 @@ pub(crate) unsafe fn upload(
     scene: *mut *mut RaraSceneBuffers,
     layers: impl FnOnce() -> Result<Vec<GivenLayer>>,
 ) -> RaraResult {
-    // SAFETY: the caller's promises.
-    guard(|| unsafe {
+    guard(|| {
         create(scene, "scene", || {
             let device = alive(device, "device")?;
             let layers = layers()?;
@@ -139,17 +137,13 @@ pub(crate) unsafe fn upload(
 }
 
 /// Bytes of staging memory for the scene that `layers` gives.
-///
-/// # Safety
-/// `bytes` is null, or may be overwritten.
 pub(crate) unsafe fn staging_bytes(
     sh_format: RaraShFormat,
     bytes: *mut u64,
     layers: impl FnOnce() -> Result<Vec<GivenLayer>>,
 ) -> RaraResult {
     guard(|| {
-        // SAFETY: the caller's promise.
-        let bytes = unsafe { exclusive(bytes, "bytes") }?;
+        let bytes = exclusive(bytes, "bytes")?;
         let layers = layers()?;
         let numbers = numbers_of(&layers);
         let scene = of_layers(&layers, &numbers);
@@ -170,8 +164,7 @@ pub(crate) unsafe fn upload_with(
     scene: *mut *mut RaraSceneBuffers,
     layers: impl FnOnce() -> Result<Vec<GivenLayer>>,
 ) -> RaraResult {
-    // SAFETY: the caller's promises.
-    guard(|| unsafe {
+    guard(|| {
         create(scene, "scene", || {
             let device = alive(device, "device")?;
             let cmd = recording(cmd)?;
@@ -193,8 +186,7 @@ pub unsafe extern "C" fn rara_scene_buffers_staging_bytes(
     sh_format: RaraShFormat,
     bytes: *mut u64,
 ) -> RaraResult {
-    // SAFETY: the caller's promises.
-    unsafe { staging_bytes(sh_format, bytes, || one_layer(gaussians)) }
+    staging_bytes(sh_format, bytes, || one_layer(gaussians))
 }
 
 /// Uploads a scene of one layer by the host's own means: allocates its buffers, writes it into the host's staging memory
@@ -223,12 +215,9 @@ pub unsafe extern "C" fn rara_scene_buffers_upload_with(
     sh_format: RaraShFormat,
     scene: *mut *mut RaraSceneBuffers,
 ) -> RaraResult {
-    // SAFETY: the caller's promises.
-    unsafe {
-        upload_with(device, cmd, staging, sh_format, scene, || {
-            one_layer(gaussians)
-        })
-    }
+    upload_with(device, cmd, staging, sh_format, scene, || {
+        one_layer(gaussians)
+    })
 }
 
 /// Bytes of device memory that a scene takes, 0 for null.

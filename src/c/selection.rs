@@ -24,8 +24,7 @@ pub unsafe extern "C" fn rara_gaussians_load_with(
     predicate_count: usize,
     gaussians: *mut *mut RaraGaussians,
 ) -> RaraResult {
-    // SAFETY: the caller's promises.
-    guard(|| unsafe {
+    guard(|| {
         create(gaussians, "gaussians", || {
             let path = text::path(path, "path")?;
             let predicates = parsed(predicates, predicate_count)?;
@@ -44,8 +43,7 @@ pub unsafe extern "C" fn rara_gaussians_load_from_with(
     predicate_count: usize,
     gaussians: *mut *mut RaraGaussians,
 ) -> RaraResult {
-    // SAFETY: the caller's promises.
-    guard(|| unsafe {
+    guard(|| {
         create(gaussians, "gaussians", || {
             let name = text::path(name, "name")?;
             let source = Cursor::new(list(data, size, "data")?);
@@ -65,8 +63,7 @@ pub unsafe extern "C" fn rara_gaussians_set_property(
     values: *const f64,
     count: usize,
 ) -> RaraResult {
-    // SAFETY: the caller's promises.
-    guard(|| unsafe {
+    guard(|| {
         let mut gaussians = alone(gaussians, "gaussians")?;
         let name = text(name, "name")?;
         if name.trim().is_empty() {
@@ -105,8 +102,7 @@ pub unsafe extern "C" fn rara_gaussians_select(
     placement: *const RaraPlacement,
     taken: *mut *mut RaraGaussians,
 ) -> RaraResult {
-    // SAFETY: the caller's promises.
-    guard(|| unsafe {
+    guard(|| {
         create(taken, "taken", || {
             let mut gaussians = alone(gaussians, "gaussians")?;
             let predicate = parse(text(predicate, "predicate")?, "predicate")?;
@@ -215,15 +211,11 @@ fn parse(predicate: &str, name: &str) -> Result<Predicate> {
     parsed.map_err(|error: Error| Error::Invalid(format!("{name}: {error}")))
 }
 
-/// # Safety
-/// `predicates` is null, or points to `count` texts that end in NUL.
 unsafe fn parsed(predicates: *const *const c_char, count: usize) -> Result<Vec<Predicate>> {
-    // SAFETY: the caller's promise.
-    let predicates = unsafe { list(predicates, count, "predicates") }?;
+    let predicates = list(predicates, count, "predicates")?;
     let parsed = predicates.iter().enumerate().map(|(index, &predicate)| {
         let name = format!("predicates[{index}]");
-        // SAFETY: as above.
-        parse(unsafe { text(predicate, &name) }?, &name)
+        parse(text(predicate, &name)?, &name)
     });
     parsed.collect()
 }

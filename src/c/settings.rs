@@ -5,7 +5,7 @@ use rara::{
     Decay, ExactForm, Miss, Mode, PhiForm, Precision, Preset, Raster, Result, Settings, Show,
 };
 
-use crate::boundary::{RaraResult, Versioned, guard, invalid, read, write};
+use crate::boundary::{RaraResult, guard, invalid, read, versioned, write};
 
 /// How a clip treats the Gaussians that it cuts.
 pub type RaraMode = u32;
@@ -121,10 +121,7 @@ pub struct RaraSettings {
     pub transmittance_min: f32,
 }
 
-// SAFETY: repr(C), plain numbers, the size first.
-unsafe impl Versioned for RaraSettings {
-    const NAME: &'static str = "RaraSettings";
-}
+versioned!(RaraSettings);
 
 impl RaraSettings {
     pub(crate) fn new(preset: Preset) -> Self {
@@ -229,15 +226,13 @@ pub(crate) fn mode_code(mode: Mode) -> RaraMode {
     }
 }
 
-/// # Safety
-/// `settings` is null, for the defaults, or points to one.
+/// Reads a host's settings; null stands for the defaults.
 pub(crate) unsafe fn settings(settings: *const RaraSettings) -> Result<Settings> {
     let default = RaraSettings::new(Preset::default());
     if settings.is_null() {
         return default.settings();
     }
-    // SAFETY: the caller's promise.
-    unsafe { read(settings, default, "settings") }?.settings()
+    read(settings, default, "settings")?.settings()
 }
 
 /// The default settings with a preset's precision. `settings_size` is sizeof *settings.
@@ -255,7 +250,6 @@ pub unsafe extern "C" fn rara_settings_default(
             other => return invalid(format!("preset {other} is no RaraPreset")),
         };
         let default = RaraSettings::new(preset);
-        // SAFETY: the caller's promise.
-        unsafe { write(settings, settings_size, &default, "settings") }
+        write(settings, settings_size, &default, "settings")
     })
 }

@@ -6,7 +6,7 @@ use std::ptr::null_mut;
 use rara::ash::vk;
 use rara::{Result, Staging};
 
-use crate::boundary::{RaraResult, Versioned, guard, invalid, memory, read, write};
+use crate::boundary::{RaraResult, guard, invalid, memory, read, versioned, write};
 
 /// A part of the host's memory that the device can copy from.
 #[repr(C)]
@@ -24,10 +24,7 @@ pub struct RaraStaging {
     pub size: usize,
 }
 
-// SAFETY: repr(C), a handle, numbers and a pointer, the size first.
-unsafe impl Versioned for RaraStaging {
-    const NAME: &'static str = "RaraStaging";
-}
+versioned!(RaraStaging);
 
 const NOTHING: RaraStaging = RaraStaging {
     struct_size: size_of::<RaraStaging>(),
@@ -43,15 +40,13 @@ pub unsafe extern "C" fn rara_staging_default(
     staging: *mut RaraStaging,
     staging_size: usize,
 ) -> RaraResult {
-    // SAFETY: the caller's promise.
-    guard(|| unsafe { write(staging, staging_size, &NOTHING, "staging") })
+    guard(|| write(staging, staging_size, &NOTHING, "staging"))
 }
 
 /// # Safety
 /// `staging` is null, or points to one that is as its fields say, and nobody else uses its range for `'a`.
 pub(crate) unsafe fn staging<'a>(staging: *const RaraStaging) -> Result<Staging<'a>> {
-    // SAFETY: the caller's promise.
-    let staging = unsafe { read(staging, NOTHING, "staging") }?;
+    let staging = read(staging, NOTHING, "staging")?;
     if staging.buffer == vk::Buffer::null() {
         return invalid("staging->buffer is null");
     }
@@ -61,7 +56,6 @@ pub(crate) unsafe fn staging<'a>(staging: *const RaraStaging) -> Result<Staging<
     Ok(Staging {
         buffer: staging.buffer,
         offset: staging.offset,
-        // SAFETY: the caller's promise.
-        bytes: unsafe { memory(staging.mapped, staging.size, "staging->mapped") }?,
+        bytes: memory(staging.mapped, staging.size, "staging->mapped")?,
     })
 }

@@ -4,7 +4,7 @@ use std::ffi::c_char;
 
 use rara::ash::vk;
 
-use crate::boundary::{RaraResult, Versioned, guard, write};
+use crate::boundary::{RaraResult, guard, versioned, write};
 use crate::handles::alive;
 use crate::renderer::RaraRenderer;
 use crate::settings::{
@@ -65,10 +65,7 @@ pub struct RaraFrameStats {
     pub skipped: [[c_char; RARA_NAME_SIZE]; RARA_MAX_PASSES],
 }
 
-// SAFETY: repr(C), plain numbers, the size first.
-unsafe impl Versioned for RaraFrameStats {
-    const NAME: &'static str = "RaraFrameStats";
-}
+versioned!(RaraFrameStats);
 
 /// The statistics of a frame, to be asked for after waiting for it and before the next rara_renderer_prepare.
 /// `stats_size` is sizeof *stats.
@@ -116,7 +113,6 @@ pub unsafe extern "C" fn rara_renderer_stats(
         for (to, from) in found.skipped.iter_mut().zip(&skipped) {
             *to = fixed(from);
         }
-        // SAFETY: the caller's promise.
-        unsafe { write(stats, stats_size, &found, "stats") }
+        write(stats, stats_size, &found, "stats")
     })
 }

@@ -5,7 +5,7 @@ use std::ffi::{c_char, c_void};
 use rara::ash::vk;
 use rara::gpu::{self, Support};
 
-use crate::boundary::{RaraResult, Versioned, guard, read, write};
+use crate::boundary::{RaraResult, guard, read, versioned, write};
 use crate::device::{PFN_vkGetInstanceProcAddr, load_instance};
 
 /// Room for the names of extensions in RaraSupport.
@@ -45,10 +45,7 @@ pub struct RaraSupport {
     pub full_subgroups: vk::Bool32,
 }
 
-// SAFETY: repr(C), plain numbers and pointers that are not followed, the size first.
-unsafe impl Versioned for RaraSupport {
-    const NAME: &'static str = "RaraSupport";
-}
+versioned!(RaraSupport);
 
 impl RaraSupport {
     fn of(support: &Support) -> Self {
@@ -102,12 +99,9 @@ pub unsafe extern "C" fn rara_check(
     support_size: usize,
 ) -> RaraResult {
     guard(|| {
-        // SAFETY: the caller's promises.
-        unsafe {
-            let instance = load_instance(get_instance_proc_addr, instance, physical_device)?;
-            let found = RaraSupport::of(&gpu::check(&instance, physical_device, api_version)?);
-            write(support, support_size, &found, "support")
-        }
+        let instance = load_instance(get_instance_proc_addr, instance, physical_device)?;
+        let found = RaraSupport::of(&gpu::check(&instance, physical_device, api_version)?);
+        write(support, support_size, &found, "support")
     })
 }
 
@@ -123,8 +117,7 @@ pub unsafe extern "C" fn rara_support_features(
     support: *const RaraSupport,
     p_next: *mut c_void,
 ) -> RaraResult {
-    // SAFETY: the caller's promises.
-    guard(|| unsafe {
+    guard(|| {
         let default = RaraSupport::of(&Support::default());
         let support = read(support, default, "support")?;
         support.support().set_features(p_next)

@@ -28,31 +28,21 @@ pub(crate) fn fixed<const N: usize>(from: &str) -> [c_char; N] {
 /// # Safety
 /// `text` is null, or a string that ends in NUL and that nobody changes for `'a`.
 unsafe fn string<'a>(text: *const c_char, name: &str) -> Result<&'a CStr> {
-    // SAFETY: the caller's promise.
-    unsafe { shared(text, name) }?;
-    // SAFETY: as above, and not null.
-    Ok(unsafe { CStr::from_ptr(text) })
+    shared(text, name)?;
+    Ok(CStr::from_ptr(text))
 }
 
 /// A string in UTF-8.
-///
-/// # Safety
-/// As for [`string`].
 pub(crate) unsafe fn text<'a>(text: *const c_char, name: &str) -> Result<&'a str> {
-    // SAFETY: the caller's promise.
-    match unsafe { string(text, name) }?.to_str() {
+    match string(text, name)?.to_str() {
         Ok(text) => Ok(text),
         Err(_) => invalid(format!("{name} is not UTF-8: give it in UTF-8")),
     }
 }
 
 /// A file's name: UTF-8, or on Unix any bytes.
-///
-/// # Safety
-/// As for [`string`].
 pub(crate) unsafe fn path(text: *const c_char, name: &str) -> Result<PathBuf> {
-    // SAFETY: the caller's promise.
-    path_of(unsafe { string(text, name) }?)
+    path_of(string(text, name)?)
 }
 
 #[cfg(unix)]

@@ -16,12 +16,12 @@ use super::{memory, output, process};
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Sections, in the order in which they run:
-  correct       every raster path and mode against the picture in double precision; always runs
-  passes        each stage, by Gaussians, size (512, 1024 and 2048), mode and raster path
-  bound         a frame against what it cannot do without: bytes, fragments and keys
-  proportion    frames that show a hundredth of a scene
-  start         from nothing to the first picture, in a process of its own
-  instructions  instructions of the CPU side, counted by valgrind's callgrind
+  correct     every raster path and mode against the picture in double precision; always runs
+  passes      each stage, by Gaussians, size (512, 1024 and 2048), mode and raster path
+  bound       a frame against what it cannot do without: bytes, fragments and keys
+  proportion  frames that show a hundredth of a scene
+  start       from nothing to the first picture, in a process of its own
+  model       frames that rara model predicts, by stage, beside what it predicts for the GPU that the device is
 
 Examples:
   rara measure -o measured                # everything: the better part of an hour on two cores
@@ -60,9 +60,9 @@ pub(super) struct Measure {
     /// Number or part of the name of the device, as rara devices lists them
     #[arg(long, value_name = "N|NAME")]
     device: Option<String>,
-    /// The work of a process that another one measures
-    #[arg(long, value_name = "WORK", value_parser = PossibleValuesParser::from(run_time::CHILDREN), hide = true)]
-    child: Option<String>,
+    /// Be the process whose start another one measures
+    #[arg(long, hide = true)]
+    child: bool,
 }
 
 impl Measure {
@@ -81,8 +81,8 @@ impl Measure {
             rounds: self.rounds,
             device: HeadlessDesc::default().device(self.device.clone()),
         };
-        if let Some(work) = &self.child {
-            return Ok(run_time::child(work, &options, &mut output::answer)?);
+        if self.child {
+            return Ok(run_time::start(&options, &mut output::answer)?);
         }
         let wrong = run_time::run_time(&options, &mut self)?;
         match wrong.is_empty() {
@@ -108,10 +108,10 @@ impl Program for Measure {
         output::answer(&format!("\n{}", table.markdown()))
     }
 
-    fn child(&self, work: &str, scene: &Path, width: u32) -> rara::Result<Command> {
+    fn start(&self, scene: &Path, width: u32) -> rara::Result<Command> {
         let program = std::env::current_exe().map_err(Error::io("this program"))?;
         let mut command = Command::new(program);
-        command.args(["measure", "--child", work, "--scene"]);
+        command.args(["measure", "--child", "--scene"]);
         command.arg(scene).args(["--sizes", &width.to_string()]);
         if let Some(cameras) = &self.cameras {
             command.arg("--cameras").arg(cameras);

@@ -2,12 +2,9 @@
 //! before the first one. Each file of a section measures one scene.
 
 mod bound;
-mod callgrind;
-#[allow(unsafe_code)]
-mod child;
 mod correct;
 mod fragments;
-mod instructions;
+mod model;
 mod numbers;
 mod passes;
 mod proportion;
@@ -24,10 +21,10 @@ use rara::scene::Kind;
 use rara::{Error, Headless, Result};
 
 use crate::table::Table;
-pub use child::{CHILDREN, child};
 use numbers::Measurements;
 use run::Run;
 pub use run::{Program, RunTimeOptions};
+pub use start::start;
 use world::World;
 
 type Section = fn(&mut Run<'_>, &World, Measurements) -> Result<()>;
@@ -43,10 +40,9 @@ const SECTIONS: [(&str, &[u32], Section); 6] = [
     ("bound", &[100_000, 1_000_000, 5_000_000], bound::measure),
     ("proportion", &[2_000_000, 5_000_000], proportion::measure),
     ("start", &[500_000], start::measure),
-    (INSTRUCTIONS, &[5000], instructions::measure),
+    ("model", &model::GAUSSIANS, model::measure),
 ];
 const CORRECT: &str = "correct";
-const INSTRUCTIONS: &str = "instructions";
 
 /// The names of all sections.
 pub fn sections() -> [&'static str; SECTIONS.len()] {
@@ -84,7 +80,7 @@ fn sections_of(run: &mut Run<'_>) -> Result<()> {
         if !is_chosen && section != CORRECT {
             continue;
         }
-        if section != INSTRUCTIONS && !options.scenes.is_empty() {
+        if !options.scenes.is_empty() {
             for file in &options.scenes {
                 // Of degree 3, with 248 bytes a Gaussian; a file of a lower degree holds more of them.
                 let gaussians = file.metadata().map_or(0, |about| about.len() / 248);
@@ -93,10 +89,9 @@ fn sections_of(run: &mut Run<'_>) -> Result<()> {
             }
             continue;
         }
-        // These scenes stay small: the reference takes its time, and so does a simulated processor.
-        let is_small = [CORRECT, INSTRUCTIONS].contains(&section);
+        // These scenes stay small: the reference takes its time.
         let counts = match &options.gaussians[..] {
-            given if !is_small && !given.is_empty() => given,
+            given if section != CORRECT && !given.is_empty() => given,
             _ if options.quick => &[2000],
             _ => usual,
         };

@@ -29,7 +29,7 @@ pub(super) struct Measurements {
     scene: String,
     gaussians: usize,
     size: [u32; 2],
-    /// The raster path of all of them, where it was chosen.
+    /// What all of them have in common, such as their raster path; may be empty.
     raster: &'static str,
     /// Those of a column follow each other.
     all: Vec<Number>,

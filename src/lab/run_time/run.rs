@@ -45,8 +45,8 @@ pub trait Program {
     fn hear(&mut self, what: &str);
     /// Takes a table for people, and all numbers so far, a row each.
     fn take(&mut self, table: &Table, all: &Table) -> Result<()>;
-    /// The program itself, to do what `child` does with a scene file and pictures of this width.
-    fn child(&self, work: &str, scene: &Path, width: u32) -> Result<Command>;
+    /// The program itself, to do what [`start`](super::start) does with a scene file and pictures of this width.
+    fn start(&self, scene: &Path, width: u32) -> Result<Command>;
     /// Fails where this machine has no memory for so many Gaussians and a renderer of them.
     fn check_room(&self, gaussians: u64) -> Result<()>;
 }

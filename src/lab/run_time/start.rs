@@ -7,16 +7,18 @@ use std::process::Stdio;
 use std::time::Instant;
 
 use rara::scene::save_ply;
-use rara::{Error, Result};
+use rara::{Clip, Error, Headless, Result, Settings};
 
-use super::child::FIRST;
 use super::numbers::Measurements;
-use super::run::Run;
+use super::run::{Run, RunTimeOptions, in_mode};
 use super::world::World;
-use crate::frames::in_turn;
+use crate::frames::{MODES, in_turn};
 
 /// The two kinds of a start: the driver finds shaders that it has compiled before, or it finds none.
 const VARIANTS: [&str; 2] = ["known shaders", "new shaders"];
+
+/// The step that ends with the first picture.
+const FIRST: &str = "first picture";
 
 /// Steps and what they took, milliseconds.
 type Steps = Vec<(String, f64)>;
@@ -51,7 +53,7 @@ fn one(run: &Run<'_>, file: &Path, cache: &Path) -> Result<Steps> {
     let reading = begin.elapsed().as_secs_f64() * 1e3;
 
     let failed = |what: &str| Error::Invalid(format!("a process that was measured {what}"));
-    let mut command = run.program.child("start", file, run.options.size())?;
+    let mut command = run.program.start(file, run.options.size())?;
     // Where rara keeps what it compiles, and so do drivers unless they are told otherwise.
     command
         .env("RARA_CACHE", cache)
@@ -80,4 +82,31 @@ fn one(run: &Run<'_>, file: &Path, cache: &Path) -> Result<Steps> {
     steps.push(("reading the file".into(), reading));
     steps.push(("beyond reading the file".into(), whole - reading));
     Ok(steps)
+}
+
+/// Goes from nothing to the first pictures of the first scene file. `say` takes the steps, each with its milliseconds.
+///
+/// # Errors
+/// If the file cannot be read, or nothing be drawn.
+pub fn start(options: &RunTimeOptions, say: &mut dyn FnMut(&str) -> Result<()>) -> Result<()> {
+    let mut clock = Instant::now();
+    let mut step = |name| {
+        let said = say(&format!(
+            "{name} {:.3}",
+            clock.elapsed().as_secs_f64() * 1e3
+        ));
+        clock = Instant::now();
+        said
+    };
+    let world = World::load(&options.scenes[0], options.cameras.as_deref())?;
+    step("load")?;
+    let mut headless = Headless::new(&options.device)?;
+    step("device")?;
+    headless.load_as(&world.scene, Settings::default().precision.sh)?;
+    step("upload")?;
+    let (camera, settings) = (world.camera(0, options.size())?, in_mode(MODES[0].1));
+    headless.render(&camera, &Clip::default(), &settings)?;
+    step(FIRST)?;
+    headless.render(&camera, &Clip::default(), &settings)?;
+    step("second picture")
 }

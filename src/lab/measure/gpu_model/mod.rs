@@ -7,12 +7,14 @@
 mod costs;
 mod counted;
 mod numbers;
+mod tables;
 
 pub use costs::{COSTS, Cost};
 pub use counted::{
     FRAMES_FILE, KERNELS_FILE, Kernel, ModelFrame, SIZE, camera, clip, frames, kernels, scene,
 };
 pub use numbers::FrameNumbers;
+pub use tables::{rows, tables};
 
 /// The numbers of a GPU.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
@@ -143,6 +145,18 @@ pub fn predict(gpu: &Gpu, frame: &ModelFrame) -> Vec<PassPrediction> {
         }
     }
     all
+}
+
+/// The predicted times of the stages of passes, ms.
+pub(crate) fn stages(passes: &[PassPrediction]) -> Vec<(&'static str, f64)> {
+    let mut stages: Vec<(&str, f64)> = Vec::new();
+    for pass in passes {
+        match stages.iter_mut().find(|(stage, _)| *stage == pass.stage) {
+            Some((_, ms)) => *ms += pass.ms,
+            None => stages.push((pass.stage, pass.ms)),
+        }
+    }
+    stages
 }
 
 impl PassPrediction {

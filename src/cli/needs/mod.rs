@@ -12,7 +12,6 @@ use super::output;
 
 /// What a flag needs beside it.
 enum Need {
-    Nothing,
     /// One of these flags.
     Flag(&'static [&'static str]),
     /// This flag with one of these values.
@@ -23,23 +22,12 @@ enum Need {
     Two(&'static [&'static str]),
 }
 
-use Need::{Flag, Nothing, Other, Two, Value};
+use Need::{Flag, Other, Two, Value};
 
-/// What flags need, by their names in the definitions; where a command has none of those that are needed, nothing. Where a
-/// value is needed a note says so, since scripts give such flags to one value after another.
+/// What flags need that need anything, by their names in the definitions; where a command has none of those that are needed,
+/// nothing. Where a value is needed a note says so, since scripts give such flags to one value after another.
 const NEEDS: &[(&str, Need)] = &[
-    // The scene.
-    ("select", Nothing),
-    ("layer_clip", Nothing),
-    ("antialiasing", Nothing),
-    ("place", Nothing),
-    ("hide", Nothing),
-    ("unhide", Nothing),
     // What is written.
-    ("quiet", Nothing),
-    ("output", Nothing),
-    ("json", Nothing),
-    ("json_lines", Nothing),
     ("aov", Flag(&["output"])),
     ("skip_existing", Flag(&["output"])),
     ("save_job", Flag(&["output"])),
@@ -50,32 +38,12 @@ const NEEDS: &[(&str, Need)] = &[
         "part",
         Flag(&["path", "view", "section", "clip_normal", "from"]),
     ),
-    ("trace", Nothing),
-    ("statistics", Nothing),
-    ("thorough", Nothing),
-    ("quick", Nothing),
-    ("method", Nothing),
-    ("cases", Nothing),
-    ("repeat", Flag(&["measure"])),
     // The camera.
-    ("eye", Nothing),
-    ("target", Nothing),
     ("up", Other("views", "0")),
-    ("fov_y", Nothing),
-    ("ortho", Nothing),
     ("cameras", Flag(&["scene_files"])),
-    ("view", Nothing),
-    ("camera", Nothing),
-    ("save_camera", Nothing),
-    ("clip_near", Nothing),
-    ("clip_far", Nothing),
-    ("near_cut", Nothing),
     ("size", Other("views", "0")),
-    ("path", Nothing),
     ("frames", Flag(&["path"])),
-    ("panorama", Nothing),
     // Sections.
-    ("section", Nothing),
     ("section_thickness", Flag(&["section"])),
     ("section_scale", Flag(&["section"])),
     ("slice", Flag(&["section"])),
@@ -85,10 +53,6 @@ const NEEDS: &[(&str, Need)] = &[
     ("rim_width", Flag(&["rim"])),
     ("cut_level", Flag(&["outline", "rim"])),
     // The clip. A file may hold several shapes, and sections refuse `or` themselves.
-    ("clip", Nothing),
-    ("clip_expr", Nothing),
-    ("clip_file", Nothing),
-    ("save_clip", Nothing),
     (
         "clip_op",
         Two(&[
@@ -102,66 +66,23 @@ const NEEDS: &[(&str, Need)] = &[
             "from",
         ]),
     ),
-    ("clip_normal", Nothing),
     ("from", Flag(&["to"])),
     ("to", Flag(&["from"])),
-    ("independent", Nothing),
     // How it is drawn.
-    ("mode", Nothing),
     ("decay", Value("mode", &["exact", "rara"])),
     ("trace_all", Value("mode", &["exact", "rara"])),
     ("sigma", Value("mode", &["rara"])),
     ("miss", Value("mode", &["rara"])),
-    ("background", Nothing),
-    ("sh_degree", Nothing),
-    ("raster", Nothing),
-    ("show", Nothing),
-    ("preset", Nothing),
-    ("target_format", Nothing),
-    ("sh_format", Nothing),
     ("phi", Value("mode", &["exact"])),
-    ("key_bits", Nothing),
     ("beam_switch", Value("mode", &["exact"])),
     ("transmittance_min", Value("raster", &["tiles", "auto"])),
-    ("device", Flag(&["measure"])),
     ("device", Other("views", "0")),
-    ("validation", Flag(&["measure"])),
     ("validation", Other("views", "0")),
-    ("no_pipeline_cache", Flag(&["measure"])),
     ("no_pipeline_cache", Other("views", "0")),
     // Of single commands.
-    ("script", Nothing),
-    ("no_outline", Nothing),
-    ("no_text", Nothing),
-    ("steps", Nothing),
-    ("only", Nothing),
-    ("shapes", Nothing),
-    ("measure", Nothing),
-    ("most", Nothing),
-    ("no_reference", Nothing),
-    ("min_psnr", Nothing),
-    ("max_l1", Nothing),
-    ("map", Nothing),
-    ("min_opacity", Nothing),
-    ("scale", Nothing),
-    ("rotate", Nothing),
-    ("offset", Nothing),
-    ("scene_files", Nothing),
     ("child", Flag(&["scene_files"])),
-    ("gaussians", Nothing),
-    ("sizes", Nothing),
-    ("rounds", Nothing),
-    ("count", Nothing),
-    ("seed", Nothing),
     ("children", Value("mode", &["exact", "rara"])),
     ("leave", Value("mode", &["exact", "rara"])),
-    ("views", Nothing),
-    ("all", Nothing),
-    ("shard", Nothing),
-    ("state", Nothing),
-    ("redraw", Nothing),
-    ("status", Nothing),
-    ("report", Nothing),
 ];
 
 /// Refuses flags of a command that have no effect beside what else was typed, or says so.

@@ -7,12 +7,9 @@ use rara::clip::Expression;
 use rara::scene::{Bounds, Kind, generate, load};
 use rara::{Camera, Clip, ClipOp, Error, Gaussians, Layer, Plane, Result, Scene, Shape};
 
-/// A scene with its name.
 #[derive(Debug)]
 pub struct Source {
-    /// What tables and pages call it.
     pub name: String,
-    /// What it consists of.
     pub gaussians: Gaussians,
 }
 
@@ -36,9 +33,6 @@ pub fn generated(count: usize) -> Vec<Source> {
 }
 
 /// The scenes of these files, each under its file's name; without files, those that are [`generated`].
-///
-/// # Errors
-/// If a file cannot be read.
 pub fn sources(files: &[PathBuf], count: usize) -> Result<Vec<Source>> {
     if files.is_empty() {
         return Ok(generated(count));
@@ -77,13 +71,11 @@ pub(crate) fn names(sources: &[Source], cases: &[Case]) -> Vec<String> {
 }
 
 impl Source {
-    /// The scene that the renderer takes.
     pub fn scene(&self) -> Scene<'_> {
         Scene::from_iter([Layer::new(&self.name, &self.gaussians)])
     }
 }
 
-/// How a scene is cut.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum CaseCut {
@@ -96,10 +88,8 @@ pub enum CaseCut {
 }
 
 impl CaseCut {
-    /// All of them.
     pub const ALL: [Self; 3] = [Self::Face, Self::Edge, Self::Bite];
 
-    /// What tables and pages call it.
     pub fn name(self) -> &'static str {
         match self {
             Self::Face => "face",
@@ -119,14 +109,10 @@ impl CaseCut {
     }
 }
 
-/// One scene, seen from one side and cut in one way.
 #[derive(Debug, Clone)]
 pub struct Case {
-    /// The number of the scene.
     pub scene: usize,
-    /// How it is cut.
     pub cut: CaseCut,
-    /// From where it is seen.
     pub camera: Camera,
     direction: DVec3,
     /// Between which places along the direction the cut moves: the 15th and the 85th percentile of the centres.
@@ -141,9 +127,6 @@ impl Case {
     }
 
     /// The cut at a share of its way, 0 to 1; 0.5 is where a single picture has it. Where the ball bites, it grows.
-    ///
-    /// # Errors
-    /// If the scene has no extent.
     pub fn at(&self, share: f64) -> Result<Clip> {
         let along = self.range[0] + share * (self.range[1] - self.range[0]);
         if self.cut != CaseCut::Bite {
@@ -160,9 +143,6 @@ impl Case {
 }
 
 /// Every way of cutting each scene, in pictures of `size` pixels.
-///
-/// # Errors
-/// If a scene has no Gaussians or no extent, or a picture no size.
 pub fn cases(scenes: &[Source], up: DVec3, size: (u32, u32)) -> Result<Vec<Case>> {
     let mut cases = Vec::new();
     for (scene, source) in scenes.iter().enumerate() {

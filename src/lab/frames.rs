@@ -16,9 +16,6 @@ pub(crate) const MODES: [(&str, Mode); 4] = [
 ];
 
 /// Draws a frame that reuses nothing of the one before.
-///
-/// # Errors
-/// As [`Headless::render`] has them.
 pub fn fresh(
     headless: &mut Headless,
     camera: &Camera,
@@ -30,9 +27,6 @@ pub fn fresh(
 }
 
 /// Draws such a frame and reads its picture back.
-///
-/// # Errors
-/// As [`Headless::render`] has them.
 pub fn picture(
     headless: &mut Headless,
     camera: &Camera,
@@ -43,7 +37,6 @@ pub fn picture(
     Ok((headless.picture()?, stats))
 }
 
-/// A frame that was timed.
 #[derive(Debug, Clone)]
 pub(crate) struct FrameTime {
     pub(crate) stats: FrameStats,
@@ -51,7 +44,6 @@ pub(crate) struct FrameTime {
     pub(crate) processor_ms: f64,
 }
 
-/// Draws such a frame and times it.
 pub(crate) fn timed(
     headless: &mut Headless,
     camera: &Camera,

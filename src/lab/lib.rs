@@ -1,6 +1,7 @@
 //! The laboratory of rara: what measures it, and the experiments of the paper. What embeds rara compiles none of it.
 
 #![deny(unsafe_code)] // only what measures Vulkan itself needs it
+#![allow(missing_docs)] // it is no API
 
 pub mod bench;
 pub mod cases;

@@ -12,9 +12,6 @@ pub const LEAST: f64 = 0.1;
 
 /// An opaque picture that shows the largest difference of a channel in each pixel, from light to dark on a logarithmic
 /// scale from [`LEAST`] to [`MOST`]. Equal steps of the scale look equal.
-///
-/// # Errors
-/// If the pictures' sizes differ.
 pub fn error_map(a: &Picture, b: &Picture) -> Result<Picture> {
     same_size(a, b)?;
     let mut map = a.clone();
@@ -48,9 +45,6 @@ fn colour(difference: f64) -> [f32; 4] {
 }
 
 /// The left and the top edge of the square of `side` pixels in which two pictures differ most.
-///
-/// # Errors
-/// If the pictures' sizes differ.
 pub fn worst_square(a: &Picture, b: &Picture, side: u32) -> Result<[u32; 2]> {
     same_size(a, b)?;
     let (width, height) = (a.width as usize, a.height as usize);

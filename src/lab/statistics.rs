@@ -57,9 +57,6 @@ const EXACT_UP_TO: usize = 25;
 /// Wilcoxon's signed-rank test against 0, two-sided. Zeros are dropped, and equal magnitudes share the mean of their
 /// ranks. Up to 25 values without equal magnitudes are tested exactly, others by the normal approximation with a
 /// correction for ties and one for continuity. Of nothing but zeros p is 1.
-///
-/// # Panics
-/// Never for finite values.
 pub fn wilcoxon(values: &[f64]) -> Wilcoxon {
     let mut values: Vec<f64> = values.iter().copied().filter(|&v| v != 0.0).collect();
     values.sort_unstable_by(|a, b| a.abs().total_cmp(&b.abs()));

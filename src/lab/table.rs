@@ -11,13 +11,10 @@ pub struct Table {
     pub title: String,
     /// What the columns mean and where the numbers are from; may be empty.
     pub note: String,
-    /// What stands above each column.
     pub columns: Vec<String>,
-    /// A cell for each column.
     pub rows: Vec<Vec<Cell>>,
 }
 
-/// One cell.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Cell {
     /// Words.
@@ -27,7 +24,6 @@ pub enum Cell {
     Number(Option<f64>),
     /// A number that people see with so many decimals.
     Fixed(f64, usize),
-    /// How many.
     Count(u64),
 }
 
@@ -62,7 +58,6 @@ impl From<u32> for Cell {
 }
 
 impl Cell {
-    /// What people read.
     pub fn text(&self) -> String {
         match self {
             Self::Text(text) => text.clone(),
@@ -73,7 +68,6 @@ impl Cell {
         }
     }
 
-    /// What programs read.
     fn csv(&self) -> String {
         match self {
             Self::Text(text) => format!("\"{}\"", text.replace('"', "\"\"")),
@@ -103,7 +97,6 @@ impl Table {
         }
     }
 
-    /// Adds a row.
     pub fn row(&mut self, cells: impl IntoIterator<Item = Cell>) {
         self.rows.push(cells.into_iter().collect());
     }
@@ -120,7 +113,6 @@ impl Table {
         }
     }
 
-    /// True where a column has words.
     fn is_text(&self, column: usize) -> bool {
         let cells = self.rows.iter().filter_map(|row| row.get(column));
         cells.clone().any(Cell::is_text)

@@ -22,7 +22,6 @@ pub(crate) struct Times {
     /// The cost of a choice: `ms_min` on the device, or, where the device is this machine's processor and the system
     /// counts its time, `cpu_ms_min`, which other work on the machine hardly disturbs.
     pub(crate) cost: f64,
-    /// Each stage's median and minimum.
     pub(crate) passes: Vec<Pass>,
 }
 

@@ -19,7 +19,6 @@ use report::ChoiceRow;
 pub use variants::names;
 pub(crate) use ways::ways;
 
-/// How much is measured.
 #[derive(Debug, Clone)]
 pub struct BenchOptions {
     /// Frames of each choice, one of each in turn.
@@ -34,9 +33,6 @@ pub struct BenchOptions {
 
 /// Measures the choices on a scene. What is not within its own bound of its own picture in double precision is not timed.
 /// `progress` hears how many of how many steps are done.
-///
-/// # Errors
-/// If a frame cannot be drawn.
 pub fn bench(
     headless: &mut Headless,
     (scene, camera, clip): (&Scene<'_>, &Camera, &Clip),

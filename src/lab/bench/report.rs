@@ -7,48 +7,35 @@ use super::judge::Measures;
 use super::{shapes, ways};
 use crate::charts::{Axis, Scatter, Series};
 
-/// Everything that was measured.
 #[derive(Debug, Serialize)]
 pub struct BenchReport {
     /// The names of the layers.
     pub(crate) scene: String,
-    /// How many Gaussians the scene has.
     pub(crate) gaussians: usize,
     /// Pixels across and down.
     pub(crate) size: [u32; 2],
-    /// What drew.
     pub(crate) device: String,
-    /// And its driver.
     pub(crate) driver: String,
-    /// As in [`BenchOptions::frames`](super::BenchOptions::frames).
     pub(crate) frames: u32,
-    /// As in [`BenchOptions::steps`](super::BenchOptions::steps).
     pub(crate) steps: u32,
     /// Share of the picture in which the way of cutting makes a difference: where the hard and the exact truth differ,
     /// and 5 px around.
     pub(crate) band_share: f64,
-    /// A row for each choice.
     pub(crate) rows: Vec<ChoiceRow>,
     /// The ways of cutting at two sizes.
     #[serde(rename = "paper")] // the name that scripts know
     pub(crate) ways: Vec<ways::WayRow>,
-    /// Shapes, if they were asked for.
     pub(crate) shapes: Vec<shapes::ShapeRow>,
     /// Choices whose pictures are wrong, and why.
     pub refused: Vec<String>,
 }
 
-/// The measurements of one choice.
 #[derive(Debug, Serialize)]
 pub(crate) struct ChoiceRow {
-    /// Its name.
     pub(crate) name: &'static str,
-    /// The flags that choose it.
     pub(crate) flags: &'static str,
-    /// Its errors.
     #[serde(flatten)]
     pub(crate) measures: Measures,
-    /// Its times.
     #[serde(flatten)]
     pub(crate) times: Times,
     /// True when no other choice is both faster and nearer to the truth.
@@ -77,14 +64,11 @@ impl BenchReport {
     }
 }
 
-/// What a choice chooses.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum ChoiceKind {
-    /// How splats are cut.
     Way,
     /// How a weight changes opacity, and in which form it is computed.
     Law,
-    /// How precisely everything is computed.
     Precision,
 }
 

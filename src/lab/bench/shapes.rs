@@ -18,7 +18,6 @@ pub(crate) struct ShapeRow {
     pub(crate) name: &'static str,
     /// The region as `--clip-expr` takes it.
     pub(crate) region: String,
-    /// Splats that it cuts.
     pub(crate) cutoff: u32,
     pub(crate) exact: Times,
     pub(crate) hard: Times,

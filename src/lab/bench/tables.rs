@@ -9,7 +9,6 @@ use crate::table::{Cell, Table};
 /// The columns of a picture's errors after L1.
 const ERRORS: [&str; 6] = ["SSIM", "band SSIM", "leak", "loss", "pops", "beyond"];
 
-/// What [`ERRORS`] name.
 fn errors(m: &Measures) -> [Cell; 6] {
     [
         Cell::Fixed(m.ssim, 5),

@@ -4,16 +4,13 @@ use rara::{
     Decay, ExactForm, Miss, Mode, PhiForm, Preset, Raster, Settings, ShFormat, TargetFormat,
 };
 
-/// One choice.
 #[derive(Debug, Clone)]
 pub(crate) struct Variant {
     pub(crate) name: &'static str,
-    /// The flags that choose it.
     pub(crate) flags: &'static str,
     pub(crate) settings: Settings,
 }
 
-/// The names of all choices.
 pub fn names() -> Vec<&'static str> {
     let all = variants(Settings::default()).into_iter();
     all.map(|variant| variant.name).collect()

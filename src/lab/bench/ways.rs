@@ -8,7 +8,6 @@ use super::judge::{Judge, Measures};
 /// Pixels a side of the small picture.
 const SMALL: u32 = 256;
 
-/// One way of cutting at one size.
 #[derive(Debug, Serialize)]
 pub(crate) struct WayRow {
     pub(crate) size: [u32; 2],

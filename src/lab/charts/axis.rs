@@ -4,10 +4,8 @@ use std::ops::Range;
 
 use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
 
-/// How values lie along an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Scale {
-    /// Evenly.
     #[default]
     Linear,
     /// By their logarithms. Zeros lie on a band of their own before a break in the axis; negative values are missing.
@@ -17,19 +15,16 @@ pub enum Scale {
 /// The largest magnitude on an axis, so that lengths and steps are finite too.
 const LARGEST: f64 = 1e300;
 
-/// An axis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axis {
     /// What it measures, and in which unit: "Time (ms)".
     pub label: String,
-    /// How values lie along it.
     pub scale: Scale,
     /// From where to where it reaches; `None` is as far as the values.
     pub range: Option<[f64; 2]>,
 }
 
 impl Axis {
-    /// An axis on which values lie evenly.
     pub fn linear(label: impl Into<String>) -> Self {
         Self {
             label: label.into(),
@@ -38,7 +33,6 @@ impl Axis {
         }
     }
 
-    /// An axis on which values lie by their logarithms.
     pub fn log(label: impl Into<String>) -> Self {
         Self {
             scale: Scale::Log,
@@ -107,7 +101,6 @@ impl Axis {
     }
 }
 
-/// An axis whose ends are known.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Span {
     /// The ends, of logarithms as such.
@@ -141,7 +134,6 @@ impl Span {
         }
     }
 
-    /// The values that are marked.
     pub(super) fn marks(&self) -> Vec<f64> {
         let mut marks = if self.is_log {
             self.powers()

@@ -13,9 +13,7 @@ pub(super) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 /// Whether it was drawn; a string takes everything.
 pub(super) type DrawResult = Result<(), Box<dyn Error>>;
 
-/// The width of charts, in pixels as everything here.
 pub(super) const WIDTH: u32 = 820;
-/// The height of charts that have no reason for another one.
 pub(super) const HEIGHT: u32 = 480;
 /// Marks and legends.
 pub(super) const SMALL: u32 = 13;
@@ -57,7 +55,6 @@ pub(super) fn chart(
     svg.replacen("<svg", &(named + "\""), 1)
 }
 
-/// Where text begins or ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Anchor {
     Start,
@@ -71,7 +68,6 @@ fn clean(text: &str) -> String {
     text.chars().filter(allowed).collect()
 }
 
-/// How text looks.
 pub(super) fn style(size: u32, colour: RGBColor) -> TextStyle<'static> {
     let font = (SANS, f64::from(size) * PLOTTERS).into_font();
     TextStyle {
@@ -181,9 +177,7 @@ pub(super) fn mark(area: &Area<'_>, number: usize, (x, y): (i32, i32)) -> DrawRe
 /// What stands before a name in a legend.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Key {
-    /// The marker.
     Mark,
-    /// The marker on a line.
     Line,
 }
 

@@ -6,9 +6,7 @@ use plotters::style::RGBColor;
 pub(super) const INK: RGBColor = RGBColor(0x22, 0x22, 0x22);
 /// What stands behind, but is read.
 pub(super) const FAINT: RGBColor = RGBColor(0x66, 0x66, 0x66);
-/// Lines of a grid.
 pub(super) const GRID: RGBColor = RGBColor(0xdd, 0xdd, 0xdd);
-/// The paper.
 pub(super) const PAPER: RGBColor = RGBColor(0xff, 0xff, 0xff);
 
 /// The colours of Okabe and Ito, "Color Universal Design" (2008), those that stand out on white first; yellow, which does

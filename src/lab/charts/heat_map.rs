@@ -6,7 +6,6 @@ use super::axis::number;
 use super::canvas::{self, Anchor, Area, MEDIUM, SMALL, WIDTH, width_of};
 use super::colours;
 
-/// How values become colours.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Colours {
     /// From blue at minus this value, by nearly white at 0, to red at this value.
@@ -34,11 +33,8 @@ impl Colours {
 /// Values of rows and columns as colours, each written into its cell.
 #[derive(Debug, Clone)]
 pub struct HeatMap {
-    /// What stands above it.
     pub title: String,
-    /// What the rows are.
     pub y: String,
-    /// What the columns are.
     pub x: String,
     /// The rows, from the top.
     pub rows: Vec<String>,
@@ -48,13 +44,10 @@ pub struct HeatMap {
     pub values: Vec<Vec<f64>>,
     /// What the values measure, and in which unit.
     pub unit: String,
-    /// How they become colours.
     pub colours: Colours,
-    /// How many decimals are written into the cells.
     pub decimals: usize,
 }
 
-/// The height of a row.
 const ROW: i32 = 26;
 /// Above the cells: what the columns are, and their names.
 const ABOVE: i32 = 62;
@@ -62,7 +55,6 @@ const ABOVE: i32 = 62;
 const BELOW: i32 = 62;
 
 impl HeatMap {
-    /// The chart as an SVG document.
     pub fn svg(&self) -> String {
         let rows = self.rows.len().max(1) as i32;
         let height = 56 + ABOVE + ROW * rows + BELOW;

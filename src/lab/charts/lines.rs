@@ -6,21 +6,16 @@ use super::canvas::{self, HEIGHT, Key, WIDTH};
 use super::plot::Plot;
 use super::{Axis, Point, Series, colours};
 
-/// Values that depend on another, as lines.
 #[derive(Debug, Clone)]
 pub struct Lines {
-    /// What stands above it.
     pub title: String,
-    /// Across.
     pub x: Axis,
-    /// Up.
     pub y: Axis,
     /// The lines; a line is broken where a value is missing.
     pub series: Vec<Series>,
 }
 
 impl Lines {
-    /// The chart as an SVG document.
     pub fn svg(&self) -> String {
         canvas::chart(&self.title, (WIDTH, HEIGHT), |area| {
             let names: Vec<_> = self.series.iter().map(|s| s.name.as_str()).collect();

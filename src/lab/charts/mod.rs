@@ -25,9 +25,7 @@ pub use violins::Violins;
 /// Numbers under one name.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Values {
-    /// What legend or axis calls them.
     pub name: String,
-    /// The numbers.
     pub values: Vec<f64>,
 }
 
@@ -44,9 +42,7 @@ impl Values {
 /// A point of a chart.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Point {
-    /// Across.
     pub x: f64,
-    /// Up.
     pub y: f64,
     /// What stands beside it; nothing where it is empty.
     pub label: String,
@@ -55,9 +51,7 @@ pub struct Point {
 /// Points under one name.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {
-    /// What the legend calls them.
     pub name: String,
-    /// The points.
     pub points: Vec<Point>,
 }
 

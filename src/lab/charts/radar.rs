@@ -11,13 +11,10 @@ use super::{Axis, Values, colours};
 /// Values of a few properties as polygons around a circle.
 #[derive(Debug, Clone)]
 pub struct Radar {
-    /// What stands above it.
     pub title: String,
     /// The properties, clockwise from the top.
     pub axes: Vec<String>,
-    /// What is measured from the middle outwards.
     pub radius: Axis,
-    /// A value of each property.
     pub series: Vec<Values>,
 }
 
@@ -25,7 +22,6 @@ const WIDTH: u32 = 680;
 const HEIGHT: u32 = 560;
 
 impl Radar {
-    /// The chart as an SVG document.
     pub fn svg(&self) -> String {
         let values = self.series.iter().flat_map(|series| &series.values);
         let middle = Some(0.0).filter(|_| self.radius.range.is_none());

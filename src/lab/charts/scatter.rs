@@ -11,20 +11,15 @@ use super::{Axis, Point, Series, colours};
 /// Points, each with a name beside it where it has one.
 #[derive(Debug, Clone)]
 pub struct Scatter {
-    /// What stands above it.
     pub title: String,
-    /// Across.
     pub x: Axis,
-    /// Up.
     pub y: Axis,
-    /// The points.
     pub series: Vec<Series>,
     /// Points that a stepped line joins from left to right, such as those that none is better than; none without them.
     pub front: Vec<[f64; 2]>,
 }
 
 impl Scatter {
-    /// The chart as an SVG document.
     pub fn svg(&self) -> String {
         canvas::chart(&self.title, (WIDTH, HEIGHT + 60), |area| {
             let names: Vec<_> = self.series.iter().map(|s| s.name.as_str()).collect();

@@ -10,13 +10,10 @@ use crate::statistics::{median, standard_deviation};
 /// How samples are distributed: as wide as values are frequent, with each value as a dot and the median as a bar.
 #[derive(Debug, Clone)]
 pub struct Violins {
-    /// What stands above it.
     pub title: String,
-    /// What the samples are.
     pub x: String,
     /// Up. Where it has a range, no violin reaches beyond it.
     pub y: Axis,
-    /// The samples.
     pub samples: Vec<Values>,
 }
 
@@ -28,7 +25,6 @@ const WIDE: f64 = 0.84;
 const WIDEST: f64 = 160.0;
 
 impl Violins {
-    /// The chart as an SVG document.
     pub fn svg(&self) -> String {
         let values = self.samples.iter().flat_map(|sample| &sample.values);
         let y = self.y.span(values.copied());

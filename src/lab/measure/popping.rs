@@ -7,9 +7,7 @@ use rara::{Picture, Result};
 /// change is that of the channel that changes most.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize)]
 pub struct Popping {
-    /// The largest change of a pixel.
     pub worst: f64,
-    /// The mean change of the pixels.
     pub mean: f64,
     /// The largest change of a pixel beyond what the same pixel changes by in the truth.
     pub worst_beyond: f64,

@@ -37,7 +37,6 @@ pub struct Qualities {
 pub struct Truth {
     /// The scene without a cut.
     pub whole: Picture,
-    /// The cut.
     pub cut: Picture,
     /// A cut that removes a little more.
     pub deeper: Picture,
@@ -47,9 +46,6 @@ pub struct Truth {
 
 impl Truth {
     /// Measures a picture; `popping` is that of a sweep.
-    ///
-    /// # Errors
-    /// If the pictures' sizes differ.
     pub fn measure(&self, picture: &Picture, popping: &Popping) -> Result<Qualities> {
         let (_, naturalness) = compare_within(picture, &self.cut, Some(&self.band))?;
         Ok(Qualities {
@@ -66,9 +62,6 @@ impl Truth {
 /// How far apart the edges of two pictures are, pixels: the mean over the points of one edge of the distance from the
 /// nearest point of the other, averaged over both ways. `None` if the second picture has no edge. If only the first has
 /// none, the way from the second counts as the picture's diagonal.
-///
-/// # Errors
-/// If the pictures' sizes differ.
 pub fn edge_distance(picture: &Picture, truth: &Picture, whole: &Picture) -> Result<Option<f64>> {
     let (ours, theirs) = (edge(picture, whole)?, edge(truth, whole)?);
     if theirs.is_empty() {
@@ -119,9 +112,6 @@ fn edge(picture: &Picture, whole: &Picture) -> Result<Vec<[f64; 2]>> {
 
 /// The number of pieces of what is seen, and of holes in it, that one of the pictures has and the other has not. A piece
 /// is a set of solid pixels that touch, also at corners; a hole is a set of others that touch along sides.
-///
-/// # Errors
-/// If the pictures' sizes differ.
 pub fn pieces_apart(picture: &Picture, truth: &Picture) -> Result<u32> {
     same_size(picture, truth)?;
     let solid = |picture: &Picture| -> Vec<bool> {
@@ -172,9 +162,6 @@ fn unmatched(a: &[bool], b: &[bool], width: usize, kind: bool) -> u32 {
 
 /// How far a picture is on the way from the truth to `other`, 0 to 1: in each pixel the part of its error that points
 /// there, at most all of the way, weighted by the length of the way.
-///
-/// # Errors
-/// If the pictures' sizes differ.
 pub fn share_of_way(picture: &Picture, truth: &Picture, other: &Picture) -> Result<f64> {
     same_size(picture, truth)?;
     same_size(picture, other)?;

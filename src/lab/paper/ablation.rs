@@ -13,7 +13,6 @@ use crate::table::{Cell, Table};
 /// One way of cutting, compared with the picture of mode `none`.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct AblationRow {
-    /// The mode, and what it traces.
     pub what: String,
     /// Splats that are weighed.
     pub cutoff: u32,
@@ -32,9 +31,6 @@ pub struct AblationRow {
 }
 
 /// Draws a scene with a plane at infinity in every mode and reading. The device holds the scene.
-///
-/// # Errors
-/// If a frame cannot be drawn.
 pub fn ablation(
     headless: &mut Headless,
     scene: &Scene<'_>,
@@ -67,7 +63,6 @@ pub fn ablation(
     readings(*look).into_iter().map(row).collect()
 }
 
-/// The rows as a table.
 pub fn table(title: &str, rows: &[AblationRow]) -> Table {
     let note = "Every picture has a plane at infinity and is compared with that of mode none. L1 is on a scale of 0 to 255.";
     let mut table = Table::new(

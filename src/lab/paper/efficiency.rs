@@ -25,7 +25,6 @@ const MODES: [(&str, Mode); 4] = [
     ("Exact", Mode::Exact),
 ];
 
-/// The times of one mode.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct EfficiencyRow {
     /// The paper's name of the mode.
@@ -41,16 +40,11 @@ pub struct EfficiencyRow {
     pub passes: Vec<(String, f64)>,
 }
 
-/// Everything about one scene.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Efficiency {
-    /// Its name.
     pub scene: String,
-    /// The number of its Gaussians.
     pub gaussians: usize,
-    /// Pixels across and down.
     pub size: [u32; 2],
-    /// Frames of a sweep.
     pub frames: u32,
     /// Modes computed anew, then those that reuse.
     pub rows: Vec<EfficiencyRow>,
@@ -65,9 +59,6 @@ struct SweepTimes {
 }
 
 /// Measures `frames` frames in each mode, `repeats` times in turn. The device holds the scene.
-///
-/// # Errors
-/// If a frame cannot be drawn.
 pub fn efficiency(
     headless: &mut Headless,
     (name, scene): (&str, &Scene<'_>),
@@ -206,7 +197,6 @@ pub fn table(all: &[Efficiency]) -> Table {
     table
 }
 
-/// The stages of each mode.
 pub fn stages(all: &[Efficiency]) -> Table {
     let mut names: Vec<&str> = Vec::new();
     for (name, _) in all

@@ -74,9 +74,6 @@ fn case_name(source: &Source, case: &Case) -> String {
 /// `.csv` for each table, and the pictures. What an earlier run into the same folder has measured of the same scenes, with
 /// the same options, program and device, is not measured again. Scenes of one name
 /// get numbers.
-///
-/// # Errors
-/// If a frame cannot be drawn or a file cannot be written.
 pub fn run(
     headless: &mut Headless,
     mut sources: Vec<Source>,

@@ -13,29 +13,21 @@ const DEEPER: f64 = 0.1;
 /// One way of cutting in one case.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) struct PerceptionMeasures {
-    /// Its name in the list of ways.
     pub way: String,
-    /// The six qualities.
     pub qualities: Qualities,
     /// Mean absolute difference from the truth, on a scale of 0 to 255.
     pub l1: f64,
-    /// The largest difference of a channel.
     pub max: f64,
 }
 
-/// All ways of cutting in one case.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) struct Outcome {
-    /// The scene's name and the cut's.
     pub case: String,
-    /// One of each way.
     pub ways: Vec<PerceptionMeasures>,
 }
 
-/// The pictures of a case.
 pub(super) struct Pictures {
     pub(super) truth: Picture,
-    /// One of each way.
     pub(super) ways: Vec<Picture>,
 }
 
@@ -103,7 +95,6 @@ fn popping(
     measure::popping(&pictures, truths)
 }
 
-/// One of the six qualities.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub(super) enum Quality {
@@ -132,7 +123,6 @@ impl Quality {
         Self::Completeness,
     ];
 
-    /// What tables call it.
     pub(super) fn name(self) -> &'static str {
         match self {
             Self::Flatness => "flatness",

@@ -26,14 +26,12 @@ struct Page {
     sections: Vec<Section>,
 }
 
-/// A part of the report.
 struct Section {
     id: &'static str,
     title: &'static str,
     text: Vec<String>,
     /// What the page shows.
     body: String,
-    /// Its tables, for Markdown and CSV.
     tables: Vec<Table>,
 }
 
@@ -119,7 +117,6 @@ fn html(tables: &[Table]) -> String {
     tables.iter().map(one).collect()
 }
 
-/// Charts side by side.
 fn charts(svgs: impl IntoIterator<Item = String>) -> String {
     let all: String = svgs
         .into_iter()

@@ -8,14 +8,12 @@ use super::perception::Outcome;
 use super::series::Series;
 use crate::table::Table;
 
-/// How much is measured.
 #[derive(Debug, Clone, Hash, Serialize)]
 pub struct PaperOptions {
     /// Width and height of the pictures that are timed, pixels.
     pub size: u32,
     /// Width and height of the pictures of the cases, pixels.
     pub case_size: u32,
-    /// Frames of the moving plane, as in the paper.
     pub frames: u32,
     /// Sweeps of each mode, and frames of each choice.
     pub repeats: u32,
@@ -74,7 +72,6 @@ pub(super) struct Maps {
     pub(super) pictures: Vec<(String, [Option<String>; 4])>,
 }
 
-/// Everything that was measured.
 #[derive(Debug, Serialize)]
 pub(super) struct Results {
     pub(super) version: &'static str,

@@ -14,23 +14,19 @@ use crate::frames::{MODES, picture};
 use crate::measure;
 use crate::table::Table;
 
-/// What is varied.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) enum Property {
     /// The ratio of a Gaussian's longest axis to the others.
     Anisotropy,
     /// Where the plane stands, and so how many splats it cuts.
     Place,
-    /// The picture's width and height.
     Resolution,
-    /// The number of Gaussians.
     Count,
     /// The number of planes that cut the scene.
     Planes,
 }
 
 impl Property {
-    /// All of them.
     pub(super) const ALL: [Self; 5] = [
         Self::Anisotropy,
         Self::Place,
@@ -39,7 +35,6 @@ impl Property {
         Self::Planes,
     ];
 
-    /// What charts call it.
     pub(super) fn name(self) -> &'static str {
         match self {
             Self::Anisotropy => "anisotropy",
@@ -77,28 +72,20 @@ impl Property {
 /// A mode's name, milliseconds a frame, and L1 against the truth (of 255).
 type Costs = (String, f64, f64);
 
-/// One value of the property.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) struct Point {
     /// The value; for [`Property::Place`] the percentage of the splats in view that are cut.
     pub x: f64,
-    /// One of each mode.
     pub modes: Vec<Costs>,
 }
 
-/// All values of a property.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) struct Series {
-    /// The property.
     pub property: Property,
-    /// One for each value.
     pub points: Vec<Point>,
 }
 
 /// Measures one property on generated surfaces of `count` Gaussians in pictures of `size` pixels.
-///
-/// # Errors
-/// If a frame cannot be drawn.
 pub(super) fn series(
     headless: &mut Headless,
     property: Property,
@@ -214,7 +201,6 @@ fn planes(camera: &Camera, clip: &Clip, count: u32) -> Result<Clip> {
     ))
 }
 
-/// Cost and error as charts.
 pub(super) fn charts(series: &Series) -> [Lines; 2] {
     let line = |value: fn(&Costs) -> f64| {
         move |(index, (name, _)): (usize, &(&str, Mode))| {
@@ -243,7 +229,6 @@ pub(super) fn charts(series: &Series) -> [Lines; 2] {
     ]
 }
 
-/// All series as one table.
 pub(super) fn table(all: &[Series]) -> Table {
     let note = "Generated surfaces; everything but the property stays. Cost: milliseconds per frame, as in the table of run \
         time against error. L1 is on a scale of 0 to 255.";

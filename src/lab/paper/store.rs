@@ -10,14 +10,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::cases::plain;
 
-/// How far a run is.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PaperProgress {
-    /// What is measured now.
     pub what: String,
-    /// Parts that are done.
     pub done: usize,
-    /// All parts.
     pub parts: usize,
     /// The seconds that the rest will take if it goes on as it did; `None` before anything was measured.
     pub seconds_left: Option<f64>,

@@ -9,7 +9,6 @@ use rara::{Camera, Clip, Decay, Gaussians, Settings};
 /// Rows that a thread counts in at a time.
 const BAND: u32 = 16;
 
-/// Counts the fragments of a frame without a clip.
 pub(super) fn count(scene: &Gaussians, camera: &Camera, settings: &Settings) -> u64 {
     let view = ViewTransform::<f32>::new(camera);
     let sides = classify::classify(scene, &view, &Clip::default(), settings);

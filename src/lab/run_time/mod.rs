@@ -44,7 +44,6 @@ const SECTIONS: [(&str, &[u32], Section); 6] = [
 ];
 const CORRECT: &str = "correct";
 
-/// The names of all sections.
 pub fn sections() -> [&'static str; SECTIONS.len()] {
     SECTIONS.map(|(name, ..)| name)
 }

@@ -35,7 +35,6 @@ pub(super) struct Measurements {
     all: Vec<Number>,
 }
 
-/// What was measured in each round.
 #[derive(Debug)]
 struct Number {
     column: String,
@@ -163,7 +162,6 @@ impl Measurements {
         table
     }
 
-    /// A row for each number.
     pub(super) fn rows(&self, device: &[String; 2]) -> impl Iterator<Item = Vec<Cell>> {
         self.all.iter().map(|number| {
             let [width, height] = self.size;

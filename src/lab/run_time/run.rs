@@ -10,7 +10,6 @@ use super::numbers::Measurements;
 use super::world::World;
 use crate::table::Table;
 
-/// What is measured, and how much.
 #[derive(Debug, Clone, Default)]
 pub struct RunTimeOptions {
     /// The names of the sections; all if empty. `correct` is measured in any case.
@@ -27,7 +26,6 @@ pub struct RunTimeOptions {
     pub sizes: Vec<u32>,
     /// Rounds at most.
     pub rounds: Option<u32>,
-    /// The device to measure.
     pub device: HeadlessDesc,
 }
 
@@ -105,7 +103,6 @@ pub(super) fn rasters(headless: &Headless) -> Vec<(&'static str, Raster)> {
     rasters
 }
 
-/// The default settings in a mode.
 pub(super) fn in_mode(mode: Mode) -> Settings {
     Settings::default().mode(mode)
 }

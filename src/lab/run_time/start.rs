@@ -20,7 +20,6 @@ const VARIANTS: [&str; 2] = ["known shaders", "new shaders"];
 /// The step that ends with the first picture.
 const FIRST: &str = "first picture";
 
-/// Steps and what they took, milliseconds.
 type Steps = Vec<(String, f64)>;
 
 pub(super) fn measure(run: &mut Run<'_>, world: &World, mut numbers: Measurements) -> Result<()> {
@@ -85,9 +84,6 @@ fn one(run: &Run<'_>, file: &Path, cache: &Path) -> Result<Steps> {
 }
 
 /// Goes from nothing to the first pictures of the first scene file. `say` takes the steps, each with its milliseconds.
-///
-/// # Errors
-/// If the file cannot be read, or nothing be drawn.
 pub fn start(options: &RunTimeOptions, say: &mut dyn FnMut(&str) -> Result<()>) -> Result<()> {
     let mut clock = Instant::now();
     let mut step = |name| {

@@ -16,7 +16,6 @@ const DISTANCE: f64 = 2.2;
 const HEIGHT: f64 = 0.36;
 const FOV_Y: f64 = 50.0;
 
-/// A scene and its cameras.
 #[derive(Debug)]
 pub(super) struct World {
     pub(super) name: String,
@@ -28,7 +27,6 @@ pub(super) struct World {
 }
 
 impl World {
-    /// A generated scene.
     pub(super) fn made(name: &str, kind: Kind, count: usize) -> Self {
         let scene = generate(kind, count, 1);
         Self {

@@ -9,7 +9,6 @@ use super::{Case, Regime};
 use rara::scene::{Random, load};
 use rara::{Clip, ClipOp, Gaussians, Plane};
 
-/// Files with numbers that no trainer should write.
 pub fn regimes() -> Vec<Regime> {
     vec![
         Regime::new(

@@ -8,7 +8,6 @@ use super::{Case, Regime};
 use rara::scene::Random;
 use rara::{Camera, Clip, ClipOp, Gaussians, Plane};
 
-/// Scenes that are difficult as a whole.
 pub fn regimes() -> Vec<Regime> {
     vec![
         Regime::new("4000 thin layers", || vec![layers(4000, 1e-4)]),

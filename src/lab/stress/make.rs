@@ -14,7 +14,6 @@ pub(super) struct Setup {
     pub(super) centre: DVec3,
     /// How far it stands from there.
     pub(super) distance: f64,
-    /// How points become pixels.
     pub(super) projection: Projection,
     /// Focal length of the view in perspective, px; an orthographic one shows the plane through the centre at the same scale.
     pub(super) focal: f64,
@@ -32,7 +31,6 @@ pub(super) const PLAIN: Setup = Setup {
 };
 
 impl Setup {
-    /// The camera, from a random direction.
     pub(super) fn camera(&self, random: &mut Random) -> Camera {
         let eye = self.centre - random.direction() * self.distance;
         let fov = 2.0 * (f64::from(self.size.1) / 2.0 / self.focal).atan();
@@ -193,7 +191,6 @@ pub(super) fn on_surface(
     scene
 }
 
-/// Appends a grey splat.
 pub(super) fn push(
     scene: &mut Gaussians,
     position: glam::Vec3,
@@ -212,7 +209,6 @@ pub(super) fn set_colour(scene: &mut Gaussians, random: &mut Random) {
     }
 }
 
-/// Takes the last splat back.
 pub(super) fn pop(scene: &mut Gaussians) {
     scene.truncate(scene.len().saturating_sub(1));
 }

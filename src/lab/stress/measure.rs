@@ -42,10 +42,8 @@ pub struct FormRow {
     pub model: f64,
 }
 
-/// A row of the table.
 #[derive(Debug, Clone, Serialize)]
 pub struct RegimeRow {
-    /// The regime.
     pub regime: &'static str,
     /// Splats drawn, in all cases together.
     pub splats: usize,
@@ -57,7 +55,6 @@ pub struct RegimeRow {
     pub not_finite: usize,
     /// Most splats of a case that are visible, cut, invisible or culled here and not in the reference.
     pub miscounted: u32,
-    /// A row a form.
     pub forms: Vec<FormRow>,
     /// The limit of the weight's error.
     pub target: f64,

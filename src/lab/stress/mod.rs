@@ -31,11 +31,8 @@ pub const TARGET: f64 = 2e-4;
 /// A scene, a view of it and a cut.
 #[derive(Debug, Clone)]
 pub struct Case {
-    /// The splats.
     pub scene: Gaussians,
-    /// The camera that they are seen from.
     pub camera: Camera,
-    /// The clip that cuts them.
     pub clip: Clip,
     /// True when the footprints are apart: a pixel's alpha is then that of one splat, and shows its weight.
     pub apart: bool,
@@ -48,14 +45,11 @@ pub struct Limit {
     pub weight: f64,
     /// Least peak signal to noise ratio of a picture, decibels.
     pub psnr: f64,
-    /// The cause of it.
     pub reason: &'static str,
 }
 
-/// A kind of difficulty.
 #[derive(Debug, Clone)]
 pub struct Regime {
-    /// The difficulty.
     pub name: &'static str,
     /// The limit of a regime that cannot meet the target.
     pub limit: Option<Limit>,
@@ -64,7 +58,6 @@ pub struct Regime {
     pub exact: Option<f64>,
     /// True when there is nothing to draw.
     pub empty: bool,
-    /// Builds the cases.
     pub cases: fn() -> Vec<Case>,
 }
 
@@ -101,7 +94,6 @@ impl Regime {
     }
 }
 
-/// All regimes, in the table's order.
 pub fn regimes() -> Vec<Regime> {
     [shapes(), places(), planes(), regions(), frames(), files()].concat()
 }

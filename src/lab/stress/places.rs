@@ -9,7 +9,6 @@ use super::{Case, Regime};
 use rara::Projection;
 use rara::scene::Random;
 
-/// Cameras and worlds at extreme places.
 pub fn regimes() -> Vec<Regime> {
     vec![
         Regime::new("camera 1e4 away, focal length 2e6 px", || {

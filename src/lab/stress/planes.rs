@@ -8,7 +8,6 @@ use super::{Case, Regime};
 use rara::scene::Random;
 use rara::{Camera, Clip, ClipOp, Plane, Surface};
 
-/// Planes at extreme angles and in extreme company.
 pub fn regimes() -> Vec<Regime> {
     vec![
         Regime::new("grazing plane, n.d = 1e-2", || grazing(1e-2)),

@@ -11,7 +11,6 @@ use rara::scene::Random;
 /// Both sides of the region are within a hundredth of a splat, and each is known to a thousandth of that.
 const THIN: &str = "24 bits place both sides of a region that is a thousandth as thick as wide to a thousandth of a splat";
 
-/// Regions that bend, and combinations of shapes.
 pub fn regimes() -> Vec<Regime> {
     vec![
         Regime::new("spheres", || of(50, PLAIN, ROUND, "sphere:0,0,0,1")),

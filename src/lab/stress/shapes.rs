@@ -9,7 +9,6 @@ use rara::scene::Random;
 /// The cut of a splat whose eye is inside is as sharp as a pixel only where the line of sight runs along the plane.
 const WIDE: &str = "splats of 1e7 px: 24 bits place a cut that runs along the line of sight to a thousandth of a pixel";
 
-/// Splats of extreme shape and size.
 pub fn regimes() -> Vec<Regime> {
     vec![
         Regime::new("ordinary splats", || {

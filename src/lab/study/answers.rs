@@ -8,52 +8,41 @@ use serde::{Deserialize, Serialize};
 
 use super::Metric;
 
-/// What the files say they are.
 pub(super) const FORMAT: &str = "rara study answers";
-/// The version of the files.
 pub(super) const VERSION: u32 = 1;
 
-/// A participant's answers.
 #[derive(Debug, Clone, PartialEq, Deserialize, Serialize)]
 pub struct Answers {
     format: String,
     version: u32,
-    /// The study that the page belongs to.
     pub study: Study,
     /// The participant's code, without spaces around it and in capitals.
     pub participant: String,
     /// The group, 1 or 2.
     pub group: u8,
-    /// Who it was.
     pub background: Background,
     /// When the study was begun, in ISO 8601.
     pub begun: String,
     /// When the file was saved.
     pub saved: String,
-    /// The answers that were confirmed.
     pub answers: Vec<Answer>,
     /// What was written about the methods.
     #[serde(default)]
     pub questions: Questions,
 }
 
-/// The study that answers belong to.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize, Serialize)]
 pub struct Study {
     /// Changes with every picture.
     pub id: String,
-    /// What is compared with hard cuts.
     pub method: String,
     /// The names of the cases, in the order of the report.
     pub cases: Vec<String>,
 }
 
-/// Who took part.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Deserialize, Serialize)]
 pub struct Background {
-    /// The age group.
     pub age: String,
-    /// Experience with computer graphics.
     pub experience: String,
 }
 
@@ -63,19 +52,14 @@ pub struct Background {
 pub struct Questions {
     /// Which properties an ideal cut has.
     pub properties: String,
-    /// What both methods lack.
     pub limitations: String,
-    /// What is good about them.
     pub strengths: String,
 }
 
-/// A side of the page.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Side {
-    /// The left one.
     Left,
-    /// The right one.
     Right,
 }
 
@@ -85,20 +69,14 @@ pub enum Side {
 pub enum Which {
     /// Hard cuts.
     Hard,
-    /// The method.
     Method,
 }
 
-/// One answer.
 #[derive(Debug, Clone, PartialEq, Deserialize, Serialize)]
 pub struct Answer {
-    /// The name of the case.
     pub case: String,
-    /// In which respect.
     pub metric: Metric,
-    /// What was on the left.
     pub left: Which,
-    /// Which side was better.
     pub choice: Side,
     /// How much better: 1, barely, to 7, extremely.
     pub strength: u8,
@@ -106,7 +84,6 @@ pub struct Answer {
     pub ms: u64,
     /// How often choice or strength were set.
     pub changes: u64,
-    /// When it was confirmed, in ISO 8601.
     pub at: String,
     /// Its place among the participant's items, from 1.
     pub position: u64,

@@ -10,10 +10,8 @@ use super::files::{StagingFolder, read};
 use super::metric::Metric;
 use crate::statistics::{self, Wilcoxon};
 
-/// What the participants of a study preferred.
 #[derive(Debug, Clone, Serialize)]
 pub struct Evaluation {
-    /// The study.
     pub study: Study,
     /// Who took part, by their codes.
     pub participants: Vec<Participant>,
@@ -27,22 +25,15 @@ pub struct Evaluation {
     pub median_seconds: Option<f64>,
 }
 
-/// One who took part.
 #[derive(Debug, Clone, Serialize)]
 pub struct Participant {
-    /// The code.
     pub code: String,
-    /// Where the answers are from.
     pub file: PathBuf,
-    /// The group.
     pub group: u8,
-    /// Who it was.
     pub background: Background,
     /// How many answers the page asks for.
     pub asked: usize,
-    /// The answers.
     pub answers: Vec<Answer>,
-    /// What was written at the end.
     pub questions: Questions,
 }
 
@@ -59,10 +50,8 @@ impl Participant {
     }
 }
 
-/// What was preferred in one respect.
 #[derive(Debug, Clone, Serialize)]
 pub struct MetricResult {
-    /// In which respect.
     pub metric: Metric,
     /// Over all answers, each of one participant about one case.
     pub answers: Sample,
@@ -73,7 +62,6 @@ pub struct MetricResult {
 /// Signed preferences, -7 to 7 and positive for the method, and their statistics.
 #[derive(Debug, Clone, Serialize)]
 pub struct Sample {
-    /// The preferences.
     pub values: Vec<f64>,
     /// Their mean; `None` without any.
     pub mean: Option<f64>,
@@ -83,7 +71,6 @@ pub struct Sample {
     pub median: Option<f64>,
     /// Cohen's d against 0; `None` of fewer than two, and where all are the same.
     pub d: Option<f64>,
-    /// Wilcoxon's signed-rank test against 0.
     pub wilcoxon: Wilcoxon,
     /// The share of those above 0; `None` without any.
     pub positive: Option<f64>,

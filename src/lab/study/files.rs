@@ -11,18 +11,12 @@ use super::answers::{Answers, Study};
 /// A file that is not used because its participant saved a later one.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct StagingFolder {
-    /// The participant.
     pub participant: String,
-    /// The file that is not used.
     pub file: PathBuf,
-    /// The file that is.
     pub by: PathBuf,
 }
 
 /// Reads all files: the study that they belong to, the file of each participant that was saved last, and the others.
-///
-/// # Errors
-/// As [`evaluate`](super::evaluate).
 pub(super) fn read<P: AsRef<Path>>(
     files: &[P],
     expected: Option<&str>,

@@ -2,7 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 
-/// A respect in which two cuts are compared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Metric {
@@ -31,7 +30,6 @@ impl Metric {
         Self::ContextCompleteness,
     ];
 
-    /// What page and report call it.
     pub fn name(self) -> &'static str {
         match self {
             Self::Flatness => "Flatness",

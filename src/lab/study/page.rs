@@ -11,14 +11,11 @@ use super::metric::Metric;
 use super::pictures::{Drawing, Files, Id, StudyOptions, columns};
 use crate::cases::{Case, Source, cases, names, sources};
 
-/// A page that was written.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct StudyPage {
-    /// The page to open.
     pub page: PathBuf,
     /// The study, as the answers name it.
     pub study: String,
-    /// The names of the cases.
     pub cases: Vec<String>,
 }
 
@@ -77,7 +74,6 @@ fn check(folder: &Path, options: &StudyOptions) -> Result<()> {
     Ok(())
 }
 
-/// The data of the page.
 const DATA: &str = "data.js";
 /// The files of the page that are the same for every study.
 const FILES: [(&str, &str); 7] = [
@@ -91,7 +87,6 @@ const FILES: [(&str, &str); 7] = [
 ];
 const PICTURES: &str = "pictures";
 
-/// What the page reads as `STUDY`.
 #[derive(Debug, Serialize)]
 struct Data {
     format: &'static str,
@@ -129,9 +124,6 @@ struct CasePictures {
 }
 
 /// Writes a user study about these cases of these scenes into a folder. As [`create`] otherwise, which chooses them.
-///
-/// # Errors
-/// As [`create`].
 pub fn write(
     folder: &Path,
     headless: &mut Headless,

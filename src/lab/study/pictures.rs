@@ -8,7 +8,6 @@ use serde::Serialize;
 
 use crate::cases::Case;
 
-/// What is shown.
 #[derive(Debug, Clone)]
 pub struct StudyOptions {
     /// What is compared with hard cuts: [`Mode::Rara`] or [`Mode::Exact`].
@@ -85,7 +84,6 @@ impl Drawing<'_> {
         Ok(name)
     }
 
-    /// A case with its cut at a share of its way.
     fn picture(
         &mut self,
         case: &Case,

@@ -14,7 +14,6 @@ use super::evaluation::{Evaluation, evaluate};
 use super::metric::Metric;
 use crate::charts::{Axis, Colours, HeatMap, Radar, Values, Violins};
 
-/// What is checked.
 #[derive(Debug, Clone, Default)]
 pub struct ReportOptions {
     /// The study that all answers must belong to; `None` is that of the first file.
@@ -33,9 +32,6 @@ pub fn create(answers: &[PathBuf], folder: &Path, options: &ReportOptions) -> Re
 }
 
 /// Writes the report of an evaluation, as [`create`] says.
-///
-/// # Errors
-/// If the folder cannot be written.
 pub fn write(evaluation: &Evaluation, folder: &Path) -> Result<()> {
     fs::create_dir_all(folder).map_err(Error::io(folder))?;
     let charts = Charts::of(evaluation);
@@ -78,7 +74,6 @@ struct Markdown<'a> {
     evaluation: &'a Evaluation,
 }
 
-/// The charts of a report, as SVG documents.
 struct Charts {
     heat_map: String,
     violins: String,

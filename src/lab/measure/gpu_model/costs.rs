@@ -58,7 +58,6 @@ impl Cost {
 // Bytes of what passes read and write.
 /// A Gaussian without its colour.
 const GAUSSIAN: u64 = size_of::<types::Gaussian>() as u64;
-/// The bounds of a block.
 const BOUNDS: u64 = size_of::<types::Block>() as u64;
 /// A splat without its curvature and its depth, which lie apart.
 const SPLAT: u64 = 12 * WORD;
@@ -68,11 +67,9 @@ const CURVATURE: u64 = 4 * WORD;
 const SURVIVOR: u64 = WORD;
 /// A splat's mask of tiles.
 const TILE_MASK: u64 = 4 * WORD;
-/// The Gaussians of a block.
 const BLOCK: u64 = limits::BLOCK_SIZE as u64 * GAUSSIAN;
 /// The two masks of a block, a bit a Gaussian in each.
 const MASKS: u64 = 2 * limits::BLOCK_SIZE as u64 / 8;
-/// The totals of a block.
 const TOTALS: u64 = 4 * WORD;
 /// A change of a reclipped frame: the survivor, and its place among those that are cut.
 const CHANGE: u64 = 2 * WORD;
@@ -90,15 +87,11 @@ const fn gathered(bytes: u64) -> u64 {
 // Invocations.
 /// Those of a workgroup of the passes that sort and bin.
 const GROUP: u64 = limits::RADIX_GROUP_SIZE as u64;
-/// Those of a block.
 const GAUSSIANS: u64 = limits::BLOCK_SIZE as u64;
-/// The pixels of a tile.
 const TILE: u64 = (limits::TILE_WIDTH * limits::TILE_HEIGHT) as u64;
 
 // Counts within a workgroup.
-/// Values of a digit of the sort.
 const DIGITS: u64 = 1 << limits::SORT_BITS;
-/// Keys of an invocation of the sort.
 const KEYS: u64 = (limits::RADIX_PARTITION / limits::RADIX_GROUP_SIZE) as u64;
 /// Chunks of splats in a partition, as in glsl/macro_tiles.glsl.
 const CHUNKS: u64 = KEYS;

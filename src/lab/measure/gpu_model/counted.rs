@@ -13,24 +13,20 @@ pub const FRAMES_FILE: &str = "src/lab/measure/gpu_model/frames.txt";
 /// Where the kernels are, from the repository's root.
 pub const KERNELS_FILE: &str = "src/lab/measure/gpu_model/kernels.txt";
 
-/// The size of the frames' pictures.
 pub const SIZE: (u32, u32) = (1920, 1080);
 
 /// A frame of a generated scene, drawn by tiles, as it was counted.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ModelFrame {
-    /// How many Gaussians the scene has.
     pub gaussians: usize,
     /// True when a plane cuts it exactly in half.
     pub is_cut: bool,
-    /// Its numbers.
     pub numbers: FrameNumbers,
     /// The passes that it dispatches, in order, those without a workgroup left out.
     pub dispatches: Vec<String>,
 }
 
 impl ModelFrame {
-    /// Its name.
     pub fn name(&self) -> String {
         let millions = self.gaussians as f64 / 1e6;
         format!("{millions} M Gaussians, {}", how(self.is_cut))
@@ -57,7 +53,6 @@ fn how(is_cut: bool) -> &'static str {
     if is_cut { "cut" } else { "whole" }
 }
 
-/// The scene of a frame, that of `rara generate general`.
 pub fn scene(gaussians: usize) -> Gaussians {
     generate(Kind::General, gaussians, 1)
 }
@@ -78,7 +73,6 @@ pub fn clip(is_cut: bool) -> Result<Clip> {
 /// The estimates of RADV's compiler, for 64 invocations on a SIMD of 32 lanes of a Navi 31.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Kernel {
-    /// The pass.
     pub pass: String,
     /// True of the kernel in frames that are cut.
     pub is_cut: bool,
@@ -89,7 +83,6 @@ pub struct Kernel {
 }
 
 impl Kernel {
-    /// Its line of the file.
     pub fn text(&self) -> String {
         let frame = how(self.is_cut);
         format!("{frame} {} {} {}\n", self.pass, self.latency, self.cycles)
@@ -97,9 +90,6 @@ impl Kernel {
 }
 
 /// The frames that were counted.
-///
-/// # Panics
-/// If the file is not as it is written.
 pub fn frames() -> Vec<ModelFrame> {
     let mut all: Vec<ModelFrame> = Vec::new();
     for line in lines(include_str!("frames.txt")) {
@@ -130,9 +120,6 @@ pub fn frames() -> Vec<ModelFrame> {
 }
 
 /// The kernels of these frames.
-///
-/// # Panics
-/// If the file is not as it is written.
 pub fn kernels() -> Vec<Kernel> {
     lines(include_str!("kernels.txt")).map(kernel).collect()
 }

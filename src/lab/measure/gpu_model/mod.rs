@@ -16,7 +16,6 @@ pub use counted::{
 pub use numbers::FrameNumbers;
 pub use tables::{rows, tables};
 
-/// The numbers of a GPU.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Gpu {
     /// The name, which the name of its device contains.
@@ -32,7 +31,6 @@ pub struct Gpu {
     pub latency: f64,
 }
 
-/// The GPUs that have a name here.
 pub const GPUS: [Gpu; 4] = [
     Gpu {
         name: "RTX 4090",
@@ -71,27 +69,18 @@ pub const REACHED_BANDWIDTH: f64 = 0.85;
 /// GPUs.
 pub const GAP: f64 = 3.0;
 
-/// The lanes for which the compiler's estimates count cycles.
 const LANES_OF_ESTIMATE: f64 = 32.0;
-/// The invocations of which they do.
 const INVOCATIONS_OF_ESTIMATE: f64 = 64.0;
 
 /// The predicted times of all dispatches of a pass in a frame, ms.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct PassPrediction {
-    /// The stage that it belongs to.
     pub stage: &'static str,
-    /// The pass.
     pub pass: &'static str,
-    /// How often the frame dispatches it.
     pub dispatches: u32,
-    /// Bytes of memory.
     pub bytes: u64,
-    /// Invocations.
     pub invocations: u64,
-    /// What its bytes take.
     pub memory: f64,
-    /// What its instructions take.
     pub instructions: f64,
     /// What its longest chain takes.
     pub chain: f64,
@@ -100,7 +89,6 @@ pub struct PassPrediction {
 }
 
 impl PassPrediction {
-    /// What it waits for most.
     pub fn bound_by(&self) -> &'static str {
         let gap = f64::from(self.dispatches) * GAP / 1e3;
         let parts = [

@@ -2,7 +2,6 @@
 
 use rara::limits;
 
-/// Bytes of a word.
 pub(super) const WORD: u64 = size_of::<u32>() as u64;
 
 /// The struct of the numbers, and the numbers by their names.
@@ -15,7 +14,6 @@ macro_rules! numbers {
         }
 
         impl FrameNumbers {
-            /// The numbers by their names.
             pub fn named(&mut self) -> impl Iterator<Item = (&'static str, &mut u64)> {
                 [$((stringify!($name), &mut self.$name),)+].into_iter()
             }
@@ -24,17 +22,13 @@ macro_rules! numbers {
 }
 
 numbers! {
-    /// Blocks of Gaussians.
     blocks,
     /// Blocks that the clip may cut, or that a moved clip revisits.
     clip_blocks,
     /// Blocks that neither view nor clip settles.
     view_blocks,
-    /// Blocks with survivors.
     kept_blocks,
-    /// Layers of the scene.
     layers,
-    /// Surfaces of a layer's region.
     surfaces,
     /// Gaussians that are drawn.
     survivors,
@@ -46,9 +40,7 @@ numbers! {
     sort_passes,
     /// The most survivors that have one depth.
     tied,
-    /// Columns of tiles in the picture.
     tile_columns,
-    /// Rows of tiles in the picture.
     tile_rows,
     /// Pairs of macro-tile and splat.
     macro_pairs,
@@ -62,9 +54,7 @@ numbers! {
     several_tiles,
     /// Pairs of tile and splat that tiles load before all of their pixels are saturated.
     loaded,
-    /// Bytes of a Gaussian's spherical harmonics.
     sh_bytes,
-    /// Bytes of a cutoff record.
     record_bytes,
 }
 
@@ -127,22 +117,18 @@ impl FrameNumbers {
         u64::from(self.record_bytes > 0) * self.survivors * WORD
     }
 
-    /// Columns of macro-tiles.
     fn macro_columns(&self) -> u64 {
         self.tile_columns.div_ceil(limits::MACRO_COLUMNS.into())
     }
 
-    /// Macro-tiles of the picture.
     pub(super) fn macro_tiles(&self) -> u64 {
         self.macro_columns() * self.tile_rows.div_ceil(limits::MACRO_ROWS.into())
     }
 
-    /// Rows of tiles of all macro-tiles.
     pub(super) fn macro_tile_rows(&self) -> u64 {
         self.tile_rows * self.macro_columns()
     }
 
-    /// Tiles of the picture.
     pub(super) fn tiles(&self) -> u64 {
         self.tile_columns * self.tile_rows
     }

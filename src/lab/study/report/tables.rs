@@ -41,7 +41,6 @@ pub(super) fn metrics_csv(evaluation: &Evaluation) -> String {
     csv
 }
 
-/// Every answer.
 pub(super) fn answers_csv(evaluation: &Evaluation) -> String {
     let mut csv = String::from(
         "participant,group,case,metric,left,choice,strength,preference,ms,changes,position,at\n",

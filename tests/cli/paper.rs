@@ -17,7 +17,7 @@ fn a_report_of_one_scene_is_written_and_continued() {
     for part in [
         "Render efficiency",
         "rings, face",
-        "topological integrity",
+        "Topological integrity",
         "Cost by resolution",
         "data:image/png;base64,",
         "</html>",

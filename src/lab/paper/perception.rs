@@ -7,6 +7,7 @@ use crate::bench::{band, truth_settings, ways};
 use crate::cases::Case;
 use crate::frames::picture;
 use crate::measure::{self, Popping, Qualities, Truth};
+use crate::study::Metric;
 
 /// How far from the middle of the cut's way the cut lies that removes a little more.
 const DEEPER: f64 = 0.1;
@@ -95,66 +96,26 @@ fn popping(
     measure::popping(&pictures, truths)
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub(super) enum Quality {
-    /// The cut edge is where the true one is.
-    Flatness,
-    /// Nothing changes from step to step that the truth does not change.
-    Stability,
-    /// There are the pieces and the holes of the truth.
-    Topology,
-    /// What is around the cut looks like the truth.
-    Naturalness,
-    /// Nothing of what was removed is left.
-    Exposure,
-    /// Nothing of what stays is lost.
-    Completeness,
+/// What the defect of a quality is, and in which unit.
+pub(super) fn defect(quality: Metric) -> &'static str {
+    match quality {
+        Metric::Flatness => "distance of the edge (px)",
+        Metric::TemporalStability => "change beyond the truth's (of 255)",
+        Metric::TopologicalIntegrity => "pieces and holes too many or too few",
+        Metric::Naturalness => "1 - SSIM around the cut",
+        Metric::RoiExposure => "energy that leaks (%)",
+        Metric::ContextCompleteness => "energy that is lost (%)",
+    }
 }
 
-impl Quality {
-    /// All of them, in the paper's order.
-    pub(super) const ALL: [Self; 6] = [
-        Self::Flatness,
-        Self::Stability,
-        Self::Topology,
-        Self::Naturalness,
-        Self::Exposure,
-        Self::Completeness,
-    ];
-
-    pub(super) fn name(self) -> &'static str {
-        match self {
-            Self::Flatness => "flatness",
-            Self::Stability => "temporal stability",
-            Self::Topology => "topological integrity",
-            Self::Naturalness => "naturalness",
-            Self::Exposure => "ROI exposure",
-            Self::Completeness => "context completeness",
-        }
-    }
-
-    /// What its defect is, and in which unit.
-    pub(super) fn defect(self) -> &'static str {
-        match self {
-            Self::Flatness => "distance of the edge (px)",
-            Self::Stability => "change beyond the truth's (of 255)",
-            Self::Topology => "pieces and holes too many or too few",
-            Self::Naturalness => "1 - SSIM around the cut",
-            Self::Exposure => "energy that leaks (%)",
-            Self::Completeness => "energy that is lost (%)",
-        }
-    }
-
-    /// How large the defect is: 0 is the truth. `None` where it cannot be measured.
-    pub(super) fn of(self, q: &Qualities) -> Option<f64> {
-        match self {
-            Self::Flatness => q.flatness,
-            Self::Stability => Some(q.stability),
-            Self::Topology => Some(q.topology),
-            Self::Naturalness => q.naturalness.map(|ssim| 1.0 - ssim),
-            Self::Exposure => Some(100.0 * q.exposure),
-            Self::Completeness => Some(100.0 * q.completeness),
-        }
+/// How large the defect is: 0 is the truth. `None` where it cannot be measured.
+pub(super) fn measured(quality: Metric, q: &Qualities) -> Option<f64> {
+    match quality {
+        Metric::Flatness => q.flatness,
+        Metric::TemporalStability => Some(q.stability),
+        Metric::TopologicalIntegrity => Some(q.topology),
+        Metric::Naturalness => q.naturalness.map(|ssim| 1.0 - ssim),
+        Metric::RoiExposure => Some(100.0 * q.exposure),
+        Metric::ContextCompleteness => Some(100.0 * q.completeness),
     }
 }

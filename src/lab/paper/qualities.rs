@@ -3,20 +3,21 @@
 use rara::Settings;
 use rara::counted::counted;
 
-use super::perception::{Outcome, Quality};
+use super::perception::{Outcome, defect, measured};
 use crate::bench::ways;
 use crate::charts::{Axis, Colours, HeatMap, Radar, Values, Violins};
 use crate::statistics::{cohens_d, mean, median, standard_deviation, wilcoxon};
+use crate::study::Metric;
 use crate::table::Table;
 
 /// The pairs that are tested: the first is expected to be better than the second.
 const PAIRS: [(&str, &str); 3] = [("rara, paper", "hard"), ("rara", "hard"), ("exact", "rara")];
 
 /// The defects of one way, a number for each case in which it could be measured, with the number of the case.
-fn defects(outcomes: &[Outcome], way: &str, quality: Quality) -> Vec<Option<f64>> {
+fn defects(outcomes: &[Outcome], way: &str, quality: Metric) -> Vec<Option<f64>> {
     let of = |outcome: &Outcome| {
-        let measured = outcome.ways.iter().find(|m| m.way == way)?;
-        quality.of(&measured.qualities)
+        let found = outcome.ways.iter().find(|m| m.way == way)?;
+        measured(quality, &found.qualities)
     };
     outcomes.iter().map(of).collect()
 }
@@ -42,12 +43,12 @@ pub(super) fn means(outcomes: &[Outcome]) -> Table {
         "worst",
     ];
     let mut table = Table::new("The six qualities", note, columns);
-    for quality in Quality::ALL {
+    for quality in Metric::ALL {
         for (way, _) in ways(Settings::default()) {
             let values = known(defects(outcomes, way, quality));
             table.row([
                 quality.name().into(),
-                quality.defect().into(),
+                defect(quality).into(),
                 way.into(),
                 (values.len() as u32).into(),
                 mean(&values).into(),
@@ -76,7 +77,7 @@ pub(super) fn tests(outcomes: &[Outcome]) -> Table {
         "p",
     ];
     let mut table = Table::new("Effect sizes and tests", note, columns);
-    for quality in Quality::ALL {
+    for quality in Metric::ALL {
         for (better, worse) in PAIRS {
             let pairs = defects(outcomes, better, quality).into_iter();
             let pairs = pairs.zip(defects(outcomes, worse, quality));
@@ -108,7 +109,7 @@ pub(super) fn heat_map(outcomes: &[Outcome], way: &str) -> HeatMap {
         (Some(0.0), Some(_)) => 0.0, // neither has the defect
         _ => f64::NAN,
     };
-    let columns: Vec<Vec<f64>> = Quality::ALL
+    let columns: Vec<Vec<f64>> = Metric::ALL
         .iter()
         .map(|&quality| {
             let ours = defects(outcomes, way, quality).into_iter();
@@ -126,7 +127,7 @@ pub(super) fn heat_map(outcomes: &[Outcome], way: &str) -> HeatMap {
             .iter()
             .map(|outcome| outcome.case.clone())
             .collect(),
-        columns: Quality::ALL.map(|quality| quality.name().into()).into(),
+        columns: Metric::ALL.map(|quality| quality.name().into()).into(),
         values: (0..outcomes.len()).map(row).collect(),
         unit: format!("log10 of the defect of {way} over that of hard; less than 0 is better"),
         colours: Colours::Diverging(3.0),
@@ -136,7 +137,7 @@ pub(super) fn heat_map(outcomes: &[Outcome], way: &str) -> HeatMap {
 
 /// The distribution of each quality's defects over the cases, a violin for each way.
 pub(super) fn violins(outcomes: &[Outcome]) -> Vec<Violins> {
-    let chart = |quality: Quality| {
+    let chart = |quality: Metric| {
         // A logarithmic axis has no place for 0: what is less than a hundred thousandth is drawn there.
         let of = |(way, _)| {
             let values = known(defects(outcomes, way, quality)).into_iter();
@@ -145,11 +146,11 @@ pub(super) fn violins(outcomes: &[Outcome]) -> Vec<Violins> {
         Violins {
             title: quality.name().into(),
             x: "way of cutting".into(),
-            y: Axis::linear(format!("log10 of: {}", quality.defect())),
+            y: Axis::linear(format!("log10 of: {}", defect(quality))),
             samples: ways(Settings::default()).map(of).into(),
         }
     };
-    Quality::ALL.map(chart).into()
+    Metric::ALL.map(chart).into()
 }
 
 /// The share of the defects of `hard` that each way avoids, in the mean over the cases.
@@ -160,11 +161,11 @@ pub(super) fn radar(outcomes: &[Outcome]) -> Radar {
             hard if hard > 0.0 => (100.0 * (1.0 - mean_of(way, quality) / hard)).max(0.0),
             _ => f64::NAN,
         };
-        Values::new(way, Quality::ALL.map(share))
+        Values::new(way, Metric::ALL.map(share))
     };
     Radar {
         title: "Share of the defects of hard that is avoided".into(),
-        axes: Quality::ALL.map(|quality| quality.name().into()).into(),
+        axes: Metric::ALL.map(|quality| quality.name().into()).into(),
         radius: Axis::linear("avoided (%)").between(0.0, 100.0),
         series: ways(Settings::default())[1..]
             .iter()

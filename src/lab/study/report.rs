@@ -13,6 +13,7 @@ use rara::{Error, Result};
 use super::evaluation::{Evaluation, evaluate};
 use super::metric::Metric;
 use crate::charts::{Axis, Colours, HeatMap, Radar, Values, Violins};
+use crate::table::Table;
 
 #[derive(Debug, Clone, Default)]
 pub struct ReportOptions {
@@ -35,20 +36,23 @@ pub fn create(answers: &[PathBuf], folder: &Path, options: &ReportOptions) -> Re
 pub fn write(evaluation: &Evaluation, folder: &Path) -> Result<()> {
     fs::create_dir_all(folder).map_err(Error::io(folder))?;
     let charts = Charts::of(evaluation);
+    let results = tables::metrics(evaluation);
     let html = Html {
         evaluation,
+        results: &results,
         charts: &charts,
+    };
+    let markdown = Markdown {
+        evaluation,
+        results: &results,
     };
     let filled =
         |error: askama::Error| Error::Invalid(format!("the report's template failed: {error}"));
     let files = [
         ("report.html", html.render().map_err(filled)?),
-        (
-            "report.md",
-            Markdown { evaluation }.render().map_err(filled)?,
-        ),
-        ("metrics.csv", tables::metrics_csv(evaluation)),
-        ("answers.csv", tables::answers_csv(evaluation)),
+        ("report.md", markdown.render().map_err(filled)?),
+        ("metrics.csv", results.csv()),
+        ("answers.csv", tables::answers(evaluation).csv()),
         ("heat_map.svg", charts.heat_map),
         ("violins.svg", charts.violins),
         ("radar.svg", charts.radar),
@@ -65,6 +69,7 @@ pub fn write(evaluation: &Evaluation, folder: &Path) -> Result<()> {
 #[template(path = "report.html")]
 struct Html<'a> {
     evaluation: &'a Evaluation,
+    results: &'a Table,
     charts: &'a Charts,
 }
 
@@ -72,6 +77,7 @@ struct Html<'a> {
 #[template(path = "report.md")]
 struct Markdown<'a> {
     evaluation: &'a Evaluation,
+    results: &'a Table,
 }
 
 struct Charts {
@@ -202,7 +208,7 @@ mod tests {
         let csv = read("answers.csv");
         assert_eq!(csv.lines().count(), 18);
         assert!(
-            csv.contains("P1,1,\"a, face\",Flatness,hard,right,5,5,1000,2,1,"),
+            csv.contains(r#""P1",1,"a, face","Flatness","hard","right",5,5,1000,2,1,"#),
             "{csv}"
         );
         assert_eq!(read("metrics.csv").lines().count(), 13);

@@ -1,79 +1,83 @@
-//! The tables of a report, for other programs.
+//! The tables of a report.
 
 use crate::study::{Evaluation, Side, Which};
-
-/// A field of a table, quoted where it has to be.
-fn field(text: &str) -> String {
-    if text.contains([',', '"', '\n', '\r']) {
-        format!("\"{}\"", text.replace('"', "\"\""))
-    } else {
-        text.into()
-    }
-}
+use crate::table::{Cell, Table};
 
 /// The statistics of each metric, over answers and over participants.
-pub(super) fn metrics_csv(evaluation: &Evaluation) -> String {
-    let mut csv = String::from(
-        "metric,over,n,mean,standard_deviation,median,cohens_d,wilcoxon_n,wilcoxon_w,wilcoxon_p,exact,positive_share\n",
-    );
-    let number = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());
+pub(super) fn metrics(evaluation: &Evaluation) -> Table {
+    let columns = [
+        "metric",
+        "over",
+        "n",
+        "mean",
+        "standard deviation",
+        "median",
+        "d",
+        "n of W",
+        "W",
+        "p",
+        "exact",
+        "positive share",
+    ];
+    let mut table = Table::new("Results by metric", "", columns);
     for result in &evaluation.metrics {
         for (over, sample) in result.samples() {
             let test = sample.wilcoxon;
-            let fields = [
+            let is_tested = |number: f64| Some(number).filter(|_| test.n > 0);
+            table.row([
                 result.metric.name().into(),
                 over.into(),
-                sample.values.len().to_string(),
-                number(sample.mean),
-                number(sample.deviation),
-                number(sample.median),
-                number(sample.d),
-                test.n.to_string(),
-                test.statistic.to_string(),
-                test.p.to_string(),
-                test.exact.to_string(),
-                number(sample.positive),
-            ];
-            csv += &fields.map(|text: String| field(&text)).join(",");
-            csv.push('\n');
+                Cell::Count(sample.values.len() as u64),
+                sample.mean.into(),
+                sample.deviation.into(),
+                sample.median.into(),
+                sample.d.into(),
+                Cell::Count(test.n as u64),
+                is_tested(test.statistic).into(),
+                is_tested(test.p).into(),
+                test.exact.to_string().into(),
+                sample.positive.into(),
+            ]);
         }
     }
-    csv
+    table
 }
 
-pub(super) fn answers_csv(evaluation: &Evaluation) -> String {
-    let mut csv = String::from(
-        "participant,group,case,metric,left,choice,strength,preference,ms,changes,position,at\n",
-    );
+pub(super) fn answers(evaluation: &Evaluation) -> Table {
+    let columns = [
+        "participant",
+        "group",
+        "case",
+        "metric",
+        "left",
+        "choice",
+        "strength",
+        "preference",
+        "ms",
+        "changes",
+        "position",
+        "at",
+    ];
+    let mut table = Table::new("", "", columns);
     for participant in &evaluation.participants {
         for answer in &participant.answers {
-            let left = if answer.left == Which::Hard {
-                "hard"
-            } else {
-                "method"
-            };
-            let choice = if answer.choice == Side::Left {
-                "left"
-            } else {
-                "right"
-            };
-            let fields = [
-                participant.code.clone(),
-                participant.group.to_string(),
-                answer.case.clone(),
+            let is_hard = answer.left == Which::Hard;
+            let is_left = answer.choice == Side::Left;
+            table.row([
+                participant.code.as_str().into(),
+                u32::from(participant.group).into(),
+                answer.case.as_str().into(),
                 answer.metric.name().into(),
-                left.into(),
-                choice.into(),
-                answer.strength.to_string(),
-                answer.preference().to_string(),
-                answer.ms.to_string(),
-                answer.changes.to_string(),
-                answer.position.to_string(),
-                answer.at.clone(),
-            ];
-            csv += &fields.map(|text: String| field(&text)).join(",");
-            csv.push('\n');
+                if is_hard { "hard" } else { "method" }.into(),
+                if is_left { "left" } else { "right" }.into(),
+                u32::from(answer.strength).into(),
+                answer.preference().into(),
+                Cell::Count(answer.ms),
+                Cell::Count(answer.changes),
+                Cell::Count(answer.position),
+                answer.at.as_str().into(),
+            ]);
         }
     }
-    csv
+    table
 }

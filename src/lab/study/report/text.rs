@@ -6,13 +6,6 @@ use rara::counted::counted;
 
 use crate::study::{Evaluation, MetricResult, Participant, Questions, Sample};
 
-/// A number with two decimals, or a dash.
-fn short(value: Option<f64>) -> String {
-    value.map_or("\u{2013}".into(), |value| {
-        format!("{value:.2}").replace('-', "\u{2212}")
-    })
-}
-
 impl Evaluation {
     pub(super) fn is_complete(&self) -> usize {
         self.participants.iter().filter(|p| p.is_complete()).count()
@@ -94,43 +87,5 @@ impl MetricResult {
             ("answers", &self.answers),
             ("participants", &self.participants),
         ]
-    }
-}
-
-impl Sample {
-    pub(super) fn mean_text(&self) -> String {
-        short(self.mean)
-    }
-
-    pub(super) fn deviation_text(&self) -> String {
-        short(self.deviation)
-    }
-
-    pub(super) fn median_text(&self) -> String {
-        short(self.median)
-    }
-
-    pub(super) fn d_text(&self) -> String {
-        short(self.d)
-    }
-
-    pub(super) fn p_text(&self) -> String {
-        match self.wilcoxon {
-            test if test.n == 0 => short(None),
-            test if test.p < 0.001 => "< 0.001".into(),
-            test => format!("{:.3}", test.p),
-        }
-    }
-
-    pub(super) fn w_text(&self) -> String {
-        match self.wilcoxon {
-            test if test.n == 0 => short(None),
-            test => format!("{}{}", test.statistic, if test.exact { "" } else { " *" }),
-        }
-    }
-
-    pub(super) fn positive_text(&self) -> String {
-        self.positive
-            .map_or(short(None), |share| format!("{:.0} %", 100.0 * share))
     }
 }

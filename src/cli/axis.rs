@@ -8,7 +8,6 @@ use glam::DVec3;
 pub(super) struct Axis {
     /// As it was typed.
     pub(super) name: String,
-    /// Shares grow along it.
     pub(super) along: DVec3,
     /// The view's direction, along the axis or against it.
     pub(super) forward: DVec3,

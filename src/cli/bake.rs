@@ -87,7 +87,6 @@ pub(super) struct Bake {
     scenes: SceneArgs,
 }
 
-/// What was done, as a document.
 #[derive(Debug, Serialize)]
 struct Document {
     mode: String,

@@ -106,7 +106,6 @@ impl CameraArgs {
         self.view.as_deref() == Some("all")
     }
 
-    /// True when a file places the camera.
     fn is_from_file(&self) -> bool {
         self.camera.is_some() || self.cameras.is_some() || self.view.is_some()
     }
@@ -156,7 +155,6 @@ impl CameraArgs {
         self.up
     }
 
-    /// The text of `--view`.
     pub(super) fn chosen_view(&self) -> Option<&str> {
         self.view.as_deref()
     }

@@ -46,7 +46,6 @@ pub(super) struct ClipArgs {
     clip_op: ClipOp,
 }
 
-/// The help of `--clip`.
 fn shapes() -> String {
     let usages: Vec<&str> = Solid::usages().collect();
     format!(
@@ -69,17 +68,14 @@ pub(super) struct Regions {
 }
 
 impl Regions {
-    /// How its regions combine.
     pub(super) fn op(&self) -> ClipOp {
         self.op
     }
 
-    /// True where there is none.
     pub(super) fn is_empty(&self) -> bool {
         self.all.is_empty()
     }
 
-    /// The regions in a scene.
     pub(super) fn of(&self, scene: &Scene<'_>) -> rara::Result<Vec<Expression>> {
         let bounds = LazyCell::new(|| Bounds::of(scene.clone()));
         self.all
@@ -100,7 +96,6 @@ impl Regions {
         Ok(self.save(loaded)?)
     }
 
-    /// The clip in a scene.
     pub(super) fn clip(&self, scene: &Scene<'_>) -> rara::Result<Clip> {
         Ok(joined(&self.of(scene)?, self.op))
     }

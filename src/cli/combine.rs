@@ -8,10 +8,8 @@ use super::times;
 /// Frames of one picture that were measured.
 #[derive(Debug, Clone, Serialize)]
 pub(super) struct Measured {
-    /// Their medians.
     #[serde(flatten)]
     pub(super) stats: FrameStats,
-    /// The number of the frames.
     pub(super) samples: usize,
     pub(super) least: Times,
     pub(super) greatest: Times,
@@ -79,7 +77,6 @@ impl Measured {
     }
 }
 
-/// How the values of several frames become one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Combine {
     Median,

@@ -47,7 +47,6 @@ pub(super) struct Compare {
     json: bool,
 }
 
-/// The measures as a document.
 #[derive(Debug, Serialize)]
 pub(super) struct Measures {
     pub(super) max: f64,
@@ -125,7 +124,6 @@ impl Apart {
     }
 }
 
-/// A picture over a background.
 fn over(picture: &Picture, background: [f32; 3]) -> Picture {
     opaque(picture, |[r, g, b, a]| {
         let [behind_r, behind_g, behind_b] = background.map(|c| (1.0 - a) * c);

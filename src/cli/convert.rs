@@ -59,7 +59,6 @@ pub(super) struct Convert {
     scenes: SceneArgs,
 }
 
-/// What was done, as a document.
 #[derive(Debug, Serialize)]
 struct Document {
     file: PathBuf,

@@ -48,7 +48,6 @@ pub(super) struct Demo {
 /// Frames of each mode, whose median is shown.
 const FRAMES: u32 = 5;
 
-/// The result of one mode.
 struct Shot {
     mode: Mode,
     settings: Settings,

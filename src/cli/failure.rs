@@ -3,7 +3,6 @@
 use std::fmt;
 use std::process::ExitCode;
 
-/// A command's failure.
 #[derive(Debug)]
 pub(super) enum Failure {
     /// The command line is wrong: exit status 2.

@@ -22,7 +22,6 @@ pub(super) struct Help {
     of: Option<String>,
 }
 
-/// The definition of the program's command line.
 pub(super) fn command() -> Command {
     let help = Arg::new("help")
         .short('h')

@@ -39,7 +39,6 @@ struct Document {
     facts: Facts,
 }
 
-/// Facts about Gaussians.
 #[derive(Debug, Serialize)]
 struct Facts {
     /// Box around all centres.
@@ -76,7 +75,6 @@ struct Spread {
 #[derive(Debug, Serialize)]
 struct LayerFacts {
     name: String,
-    /// The format of its file.
     format: String,
     gaussians: usize,
     opacity: f32,

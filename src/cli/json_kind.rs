@@ -8,7 +8,6 @@ use serde_json::Value;
 use super::failure::Failure;
 use super::scene_file;
 
-/// What a JSON file describes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum JsonKind {
     /// A list of layers, or anything else.
@@ -67,7 +66,6 @@ pub(super) fn is_short(path: &Path) -> bool {
     std::fs::metadata(path).is_ok_and(|facts| facts.len() <= scene_file::MOST_BYTES)
 }
 
-/// The document of a short JSON file.
 pub(super) fn document(path: &Path) -> Option<Value> {
     let text = is_short(path).then(|| std::fs::read(path).ok()).flatten()?;
     let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&text);

@@ -19,7 +19,6 @@ pub(super) enum Ortho {
     Fit,
 }
 
-/// The value of `--ortho`.
 pub(super) fn ortho(text: &str) -> Result<Ortho, String> {
     match text.parse::<f64>() {
         _ if text == "fit" => Ok(Ortho::Fit),

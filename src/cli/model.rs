@@ -32,14 +32,12 @@ pub(super) struct Model {
     json: bool,
 }
 
-/// Everything that is predicted.
 #[derive(Debug, Serialize)]
 struct ModelReport {
     gpus: &'static [Gpu],
     frames: Vec<PredictedFrame>,
 }
 
-/// A frame.
 #[derive(Debug, Serialize)]
 struct PredictedFrame {
     name: String,

@@ -14,7 +14,6 @@ use super::values::STANDARD;
 
 pub(super) use super::progress::{Progress, Spinner};
 
-/// Whether `--quiet` was typed.
 static QUIET: AtomicBool = AtomicBool::new(false);
 
 /// From now on only what was asked for is printed, and why something failed.
@@ -154,7 +153,6 @@ pub(super) fn answer(text: &str) -> Result<()> {
 /// Held by each picture from before it gets its name until its line is printed.
 static UNSETTLED: RwLock<()> = RwLock::new(());
 
-/// Whether the process was told to end.
 static IS_ENDING: AtomicBool = AtomicBool::new(false);
 
 /// Keeps this process from being told to end until what is returned goes.

@@ -56,7 +56,6 @@ impl PanoramaArgs {
     }
 }
 
-/// The panoramas of a run.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Panorama {
     /// Pixels; it is half as high.

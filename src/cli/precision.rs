@@ -44,7 +44,6 @@ pub(super) struct PrecisionArgs {
 }
 
 impl PrecisionArgs {
-    /// The precision that the flags mean.
     pub(super) fn meant(&self) -> Precision {
         let preset = self.preset.precision();
         preset

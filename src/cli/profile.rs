@@ -33,7 +33,6 @@ pub(super) struct Profile {
 }
 
 impl ProfileArgs {
-    /// True when a trace is wanted.
     pub(super) fn is_traced(&self) -> bool {
         self.trace.is_some()
     }
@@ -61,7 +60,6 @@ impl ProfileArgs {
 }
 
 impl Profile {
-    /// True when a trace is filled.
     pub(super) fn is_traced(&self) -> bool {
         self.trace.is_some()
     }

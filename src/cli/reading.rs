@@ -12,7 +12,6 @@ use rara::scene::{self, Property};
 #[derive(Debug, Clone, Copy)]
 #[cfg_attr(not(feature = "view"), allow(dead_code))]
 pub(super) struct Reading<'a> {
-    /// The file.
     pub(super) path: &'a Path,
     /// Its number from 1, and how many there are.
     pub(super) file: (usize, usize),

@@ -17,7 +17,6 @@ pub(super) enum Region<T = Expression> {
 }
 
 impl Region {
-    /// A single shape.
     pub(super) fn shape(text: &str) -> Result<Self> {
         Self::parse(text, |text| text.parse::<Shape>().map(Expression::Shape))
     }

@@ -88,14 +88,12 @@ pub(super) struct Render {
     scenes: SceneArgs,
 }
 
-/// The pictures that are asked for.
 enum Pictures {
     /// Of cameras, under one clip.
     Views(Views, Regions),
     Sections(Sections),
 }
 
-/// A picture of the scene.
 struct Shot {
     view: View,
     clip: Clip,
@@ -103,14 +101,12 @@ struct Shot {
 }
 
 impl Shot {
-    /// A section's plane.
     fn cut(&self) -> Option<&Cut> {
         self.section.as_ref().map(|section| &section.cut)
     }
 }
 
 impl Pictures {
-    /// Their numbers.
     fn numbers(&self) -> Vec<usize> {
         match self {
             Self::Views(views, _) => views.numbers().collect(),
@@ -358,7 +354,6 @@ impl Render {
         Ok(report.print(self.pictures.answer(), clips, &written.files)?)
     }
 
-    /// Draws a panorama.
     fn surroundings(
         &self,
         profile: &Profile,

@@ -15,7 +15,6 @@ use super::scenes::Loaded;
 use super::session::Session;
 use super::times;
 
-/// How what is measured is printed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Answer {
     /// As a table, for people.
@@ -49,7 +48,6 @@ pub(super) struct Report {
     frames: Vec<Frame>,
     #[serde(skip_serializing_if = "Option::is_none")]
     mean: Option<FrameStats>,
-    /// Frames of one picture.
     #[serde(skip)]
     faces: usize,
 }
@@ -59,15 +57,12 @@ pub(super) struct Report {
 pub(super) struct Frame {
     /// The number of its view or section.
     view: usize,
-    /// What that is called.
     name: String,
     /// Where the picture is, if it was written.
     file: Option<String>,
     /// The section's plane, or the one that moves: normal and offset.
     plane: Option<[f64; 4]>,
-    /// The camera that drew it.
     camera: SavedCamera,
-    /// The frames that it is made of.
     #[serde(skip)]
     faces: usize,
     #[serde(flatten)]
@@ -249,12 +244,10 @@ impl Report {
         }
     }
 
-    /// Adds the single frames.
     pub(super) fn with_frames(self, frames: Vec<Frame>) -> Self {
         Self { frames, ..self }
     }
 
-    /// Adds the frames' means.
     pub(super) fn with_mean(self) -> Self {
         let frames = self.frames.iter().map(|frame| frame.measured.stats.clone());
         Self {
@@ -334,7 +327,6 @@ impl fmt::Display for Report {
     }
 }
 
-/// Counts for people.
 struct CountsText<'a>(&'a Counts);
 
 impl fmt::Display for CountsText<'_> {

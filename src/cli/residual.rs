@@ -9,7 +9,6 @@ use super::failure::Failure;
 use super::output::{self, Progress};
 use super::session::Session;
 
-/// The measures of one view.
 #[derive(Debug, Serialize)]
 pub(super) struct View {
     eye: [f64; 3],

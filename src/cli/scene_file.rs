@@ -22,7 +22,6 @@ pub(super) const MOST_BYTES: u64 = 16 << 20;
 pub(super) struct LayerEntry {
     /// What it is called; its file's name without the ending where nothing else is said.
     pub(super) name: String,
-    /// Its file.
     pub(super) path: PathBuf,
     pub(super) state: LayerState,
     /// Whether it was trained antialiased; none where its file says that.
@@ -34,7 +33,6 @@ pub(super) struct LayerEntry {
 
 /// What of the entry's layers is known once all files are read.
 pub(super) struct Settled {
-    /// The clips of its layers.
     pub(super) clips: Vec<Option<LayerClip>>,
     /// What its selections take.
     pub(super) predicates: Vec<Predicate>,
@@ -69,7 +67,6 @@ impl LayerClip<Region> {
 }
 
 impl LayerClip {
-    /// The clip that an expression means.
     pub(super) fn of(clip: Expression) -> Self {
         match clip {
             Expression::All(all) if all.is_empty() => Self::Whole,
@@ -77,7 +74,6 @@ impl LayerClip {
         }
     }
 
-    /// Its expression.
     pub(super) fn expression(&self) -> Expression {
         match self {
             Self::Whole => Expression::All(Vec::new()),
@@ -85,7 +81,6 @@ impl LayerClip {
         }
     }
 
-    /// The region that it keeps.
     pub(super) fn clip(&self) -> Clip {
         match self {
             Self::Whole => Clip::default(),
@@ -205,7 +200,6 @@ struct Entry {
     opacity: Option<f32>,
     visible: Option<bool>,
     antialiased: Option<bool>,
-    /// An expression as a tree.
     clip: Option<Expression>,
     /// An expression as text; `whole` keeps everything.
     clip_expr: Option<String>,
@@ -218,7 +212,6 @@ struct Entry {
 #[serde(deny_unknown_fields)]
 struct Selection {
     name: String,
-    /// A predicate as text.
     r#where: String,
     opacity: Option<f32>,
     visible: Option<bool>,

@@ -14,7 +14,6 @@ use super::scene_file::{self, LayerClip, LayerEntry, Settled};
 use super::{antialiasing, layer_clip, place, select, training, values};
 use rara::scene::{Format, Property};
 
-/// The help of scenes.
 fn files() -> String {
     format!(
         "Scene files or a folder; - is standard input\n\nFormats: {}, or a folder of SOG; or a folder that training left, of \
@@ -114,7 +113,6 @@ impl SceneArgs {
         !self.layer_clip.is_empty() || entries.iter().any(LayerEntry::has_clip)
     }
 
-    /// Reads the files.
     pub(super) fn load(&self) -> Result<Loaded, Failure> {
         self.load_watched(&mut |_| ())
     }
@@ -141,13 +139,11 @@ impl SceneArgs {
 
 /// A layer that has been read.
 pub(super) struct LoadedLayer {
-    /// What it is called.
     pub(super) name: String,
     pub(super) gaussians: Gaussians,
     /// Its file's format; none where it comes from no file.
     pub(super) format: Option<Format>,
     pub(super) state: LayerState,
-    /// Its own clip.
     pub(super) clip: Option<LayerClip>,
     /// Where it is a part of a file.
     pub(super) numbers: Option<select::Numbers>,
@@ -163,7 +159,6 @@ pub(super) struct LoadedLayer {
 #[cfg_attr(not(feature = "view"), allow(dead_code))]
 pub(super) struct Listed {
     pub(super) visible: bool,
-    /// Its own clip.
     pub(super) clip: Option<LayerClip>,
 }
 
@@ -186,7 +181,6 @@ impl LoadedLayer {
     }
 }
 
-/// One or more scene files.
 pub(super) struct Loaded {
     pub(super) layers: Vec<LoadedLayer>,
     /// Gaussians that had a field put right.
@@ -217,7 +211,6 @@ impl Loaded {
         own.any(|own| !own.clip().is_everything())
     }
 
-    /// The scene of the layers.
     pub(super) fn scene(&self) -> rara::Scene<'_> {
         self.scene_cut_by(&[])
     }
@@ -320,7 +313,6 @@ pub(super) fn load_files(paths: &[PathBuf], watch: Watch<'_>) -> Result<Loaded, 
     load(entries(paths)?, &[], watch)
 }
 
-/// The layers that files are or list.
 fn entries(files: &[PathBuf]) -> Result<Vec<LayerEntry>, Failure> {
     let mut entries = Vec::new();
     for file in files {

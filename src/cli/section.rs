@@ -35,7 +35,6 @@ pub(super) struct SectionArgs {
     section_scale: Option<f32>,
 }
 
-/// What a `--section` asks for.
 #[derive(Debug, Clone, PartialEq)]
 enum Wanted {
     Across { axis: Axis, shares: Shares },
@@ -134,7 +133,6 @@ enum Planned {
     Plane(String, Plane),
 }
 
-/// A section, ready to be drawn.
 #[derive(Debug)]
 pub(super) struct Section {
     pub(super) view: View,
@@ -147,7 +145,6 @@ pub(super) struct Section {
 }
 
 impl Section {
-    /// The region that it keeps.
     pub(super) fn clip(&self) -> Clip {
         joined(&[&self.others[..], &self.own].concat(), ClipOp::And)
     }
@@ -231,17 +228,14 @@ fn unknown<'a>(name: &str, names: impl Iterator<Item = &'a str>) -> Failure {
 }
 
 impl Sections {
-    /// Their numbers.
     pub(super) fn numbers(&self) -> impl Iterator<Item = usize> + use<> {
         0..self.planned.len()
     }
 
-    /// What clips beside their planes.
     pub(super) fn regions(&self) -> &Regions {
         &self.shapes
     }
 
-    /// The sections, once the scene is known.
     pub(super) fn of(&self, scene: &Scene<'_>) -> rara::Result<Vec<Section>> {
         let bounds = Bounds::of(scene.clone());
         let others = self.shapes.of(scene)?;

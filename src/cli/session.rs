@@ -17,14 +17,12 @@ use super::combine::Measured;
 use super::output::Compiling;
 use super::process;
 
-/// A device with a scene on it.
 pub(super) struct Session {
     headless: Headless,
     /// Times from recording to the picture of the frames that are not measured, milliseconds.
     first_ms: Vec<f64>,
 }
 
-/// How often a frame is drawn.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Repeat {
     /// Once, as no time is shown.
@@ -160,7 +158,6 @@ impl Session {
         fresh(&mut self.headless, camera, clip, settings)
     }
 
-    /// One frame and its picture.
     pub(super) fn picture(
         &mut self,
         camera: &Camera,
@@ -181,7 +178,6 @@ impl Session {
         self.headless.channels(aovs, scene, frame)
     }
 
-    /// The picture of the last frame.
     pub(super) fn last_picture(&mut self) -> Result<Picture> {
         self.headless.picture()
     }
@@ -206,7 +202,6 @@ impl Session {
         self.headless.device().memory_by_name()
     }
 
-    /// Device memory that the scene takes.
     pub(super) fn scene_bytes(&self) -> u64 {
         self.headless.scene_bytes()
     }

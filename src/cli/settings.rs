@@ -81,7 +81,6 @@ pub(super) fn name(value: impl ValueEnum) -> String {
 }
 
 impl SettingsArgs {
-    /// The settings that the flags mean.
     pub(super) fn meant(&self) -> Result<Settings, Failure> {
         let defaults = self.look.meant()?;
         Ok(defaults

@@ -64,7 +64,6 @@ impl SliceArgs {
         )))
     }
 
-    /// The lines and tints to draw.
     fn cues(&self) -> Option<Cues> {
         let mut cues = Cues::default();
         let cue = |width| move |colour| Cue { colour, width };
@@ -75,7 +74,6 @@ impl SliceArgs {
     }
 }
 
-/// The slices of a scene.
 pub(super) struct Slicer<'a> {
     args: &'a SliceArgs,
     scene: Scene<'a>,
@@ -136,7 +134,6 @@ impl<'a> Slicer<'a> {
         Ok(picture.draw_cues(&slice, &cues)?)
     }
 
-    /// True when cues are drawn.
     pub(super) fn has_cues(&self) -> bool {
         self.args.cues().is_some()
     }

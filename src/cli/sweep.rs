@@ -221,7 +221,6 @@ impl Sweep {
     }
 }
 
-/// The clip that moves.
 enum Moving {
     /// A plane of this unit normal, across the scene.
     Plane(DVec3),
@@ -241,7 +240,6 @@ impl Moving {
         })
     }
 
-    /// The plane in a position, if it is one.
     fn plane(&self, position: f64) -> rara::Result<Option<Plane>> {
         match self {
             Self::Plane(normal) => Plane::new(*normal, -position).map(Some),

@@ -26,7 +26,6 @@ pub(super) fn total(frame: &FrameStats) -> Option<f64> {
     is_timed.then(|| sum(frame.passes.iter().map(|pass| pass.ms)))
 }
 
-/// The stages that ran and their times, in order.
 pub(super) fn stages(frame: &FrameStats, decimals: usize) -> Vec<String> {
     let stage = |pass: &rara::PassTime| format!("{} {}", pass.name, ms(Some(pass.ms), decimals));
     frame.passes.iter().map(stage).collect()

@@ -108,7 +108,6 @@ pub(super) fn antialiased_by(scene: &Path) -> Option<PathBuf> {
     })
 }
 
-/// The cameras beside a scene.
 pub(super) fn cameras(scene: &Path) -> Option<PathBuf> {
     ["cameras.json", "transforms.json"]
         .iter()

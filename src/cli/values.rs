@@ -16,7 +16,6 @@ pub(super) fn numbers<const COUNT: usize>(text: &str) -> Result<[f64; COUNT], St
         .map_err(|_| format!("expected {COUNT} numbers with commas between them, found {found}"))
 }
 
-/// `x,y,z`.
 pub(super) fn vec3(text: &str) -> Result<DVec3, String> {
     numbers::<3>(text).map(DVec3::from_array)
 }
@@ -84,7 +83,6 @@ pub(super) fn colour(text: &str) -> Result<[f32; 3], String> {
     Ok(rgb.map(|c| c as f32))
 }
 
-/// Colours that have a name.
 const COLOURS: [(&str, [f32; 3]); 7] = [
     ("black", [0.0, 0.0, 0.0]),
     ("white", [1.0, 1.0, 1.0]),
@@ -108,7 +106,6 @@ fn hexadecimal(digits: &str) -> Option<[f32; 3]> {
     }
 }
 
-/// A number.
 pub(super) fn finite(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(number) if number.is_finite() => Ok(number),
@@ -146,7 +143,6 @@ pub(super) fn meant<'a>(wanted: &str, names: impl Iterator<Item = &'a str>) -> S
     })
 }
 
-/// A number from 0 to 1.
 pub(super) fn share(text: &str) -> Result<f32, String> {
     match text.parse::<f32>() {
         Ok(number) if (0.0..=1.0).contains(&number) => Ok(number),
@@ -154,7 +150,6 @@ pub(super) fn share(text: &str) -> Result<f32, String> {
     }
 }
 
-/// A scene's file name.
 pub(super) fn ply_path(text: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(text);
     let fits = path
@@ -198,7 +193,6 @@ pub(super) fn film_path(path: OsString) -> Result<PathBuf, String> {
 /// In place of a file: standard input and standard output.
 pub(super) const STANDARD: &str = "-";
 
-/// The parser of a picture's file name.
 pub(super) fn picture_file() -> impl TypedValueParser<Value = PathBuf> {
     OsStringValueParser::new().try_map(picture_path)
 }

@@ -27,7 +27,6 @@ const REFUSED: [&str; 6] = [
     "save-job",
 ];
 
-/// A command.
 #[derive(Debug, Clone)]
 pub(super) struct Job {
     /// Messages call it by its file and its number there.
@@ -36,7 +35,6 @@ pub(super) struct Job {
     pub(super) words: Vec<OsString>,
 }
 
-/// The jobs of a file, or of standard input.
 pub(super) fn read(path: &Path) -> Result<Vec<Job>, Failure> {
     let mut text = String::new();
     match path == Path::new(STANDARD) {

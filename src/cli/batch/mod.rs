@@ -295,7 +295,6 @@ impl Batch {
 }
 
 impl Job {
-    /// The command that it is.
     fn command(&self) -> Result<Command, Failure> {
         let (cli, typed) = parsed(self.words.iter().cloned())?;
         needs_met(&typed)?;
@@ -310,7 +309,6 @@ fn driver(planned: &[Planned], state: &State) -> Option<String> {
     Some(headless.driver().to_owned())
 }
 
-/// What is done of a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Done {
     Not,

@@ -17,13 +17,11 @@ use serde_json::Value;
 
 use super::super::output;
 
-/// A picture that is done.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) struct Entry {
     /// Its file, or the pattern of its file and its number where names are left open.
     pub(super) picture: String,
     pub(super) file: PathBuf,
-    /// The size of the file.
     pub(super) bytes: u64,
     /// What stands for the text of its job.
     pub(super) job: String,

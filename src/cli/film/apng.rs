@@ -9,7 +9,6 @@ use rara::{Error, Result};
 
 use super::{Place, wanted};
 
-/// A film that is being written.
 pub(in super::super) struct Apng {
     encoder: Writer<Shared>,
     place: Shared,

@@ -44,13 +44,11 @@ enum Stream {
     Rgba,
 }
 
-/// Pictures a second where nothing else is said.
 const FPS: u16 = 30;
 
 /// The endings of films that are ffmpeg's.
 pub(super) const ENDINGS: &str = ".mp4, .mov, .mkv or .webm";
 
-/// The kinds of film.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
     /// An animated PNG, without loss and with alpha.
@@ -137,7 +135,6 @@ impl FilmArgs {
     }
 }
 
-/// A film that is being written.
 pub(super) enum Film {
     Apng(Apng),
     Raw(Place),

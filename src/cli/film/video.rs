@@ -13,7 +13,6 @@ use rara::{Error, Result};
 /// The kinds of file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in super::super) struct Container {
-    /// What ffmpeg calls it.
     format: &'static str,
     /// The encoder, and how good it is: hardly a difference to be seen.
     flags: &'static [&'static str],
@@ -32,7 +31,6 @@ const VP9: &[&str] = &[
 ];
 
 impl Container {
-    /// The kind with this ending.
     pub(super) fn of(ending: &str) -> Option<Self> {
         let (format, flags) = match ending {
             "mp4" => ("mp4", H264),
@@ -77,7 +75,6 @@ pub(super) fn encoder(file: &Path) -> Result<PathBuf> {
     })
 }
 
-/// A film that ffmpeg encodes.
 pub(in super::super) struct Video {
     /// None when it has got everything.
     pictures: Option<ChildStdin>,
@@ -88,7 +85,6 @@ pub(in super::super) struct Video {
 }
 
 impl Video {
-    /// Begins the film that becomes `file`.
     pub(super) fn begin(
         place: Unfinished,
         file: &Path,
@@ -144,7 +140,6 @@ impl Video {
         })
     }
 
-    /// Hands over the next picture.
     pub(super) fn add(&mut self, bytes: &[u8]) -> Result<()> {
         let written = self
             .pictures

@@ -10,7 +10,6 @@ use clap::{Arg, ArgMatches, Command};
 use super::failure::Failure;
 use super::output;
 
-/// What a flag needs beside it.
 enum Need {
     /// One of these flags.
     Flag(&'static [&'static str]),
@@ -189,7 +188,6 @@ fn has(command: &Command, id: &str) -> bool {
         .any(|argument| argument.get_id() == id)
 }
 
-/// A flag as it is typed.
 fn shown(command: &Command, id: &str) -> String {
     let mut arguments = command.get_arguments();
     let argument = arguments.find(|argument| argument.get_id() == id);

@@ -32,7 +32,6 @@ pub(super) struct PathArgs {
 /// Pictures of a path where nothing else is said: four seconds of a film.
 const FRAMES: u32 = 120;
 
-/// What `--path` asks for.
 #[derive(Debug, Clone, PartialEq)]
 enum Route {
     /// So many turns.
@@ -46,7 +45,6 @@ enum Route {
     Cameras(Option<Vec<String>>),
 }
 
-/// The value of `--path`.
 fn route(text: &str) -> Result<Route, String> {
     let (kind, rest) = match text.split_once(':') {
         Some((kind, rest)) => (kind, Some(rest)),

@@ -59,7 +59,6 @@ impl Place for DQuat {
     }
 }
 
-/// A camera on the way.
 #[derive(Debug, Clone, Copy)]
 struct Key {
     eye: DVec3,
@@ -166,13 +165,11 @@ impl Spline {
         Ok(spline)
     }
 
-    /// Cameras at even paces.
     pub(super) fn views(&self, frames: u32) -> Vec<View> {
         let place = |index| self.camera_at(super::share(index, frames, self.closed));
         super::named("spline", (0..frames).map(place))
     }
 
-    /// The camera at a share of the way.
     fn camera_at(&self, share: f64) -> Camera {
         let way = share * self.ways[self.ways.len() - 1];
         let last = self.ways.len() - 2;

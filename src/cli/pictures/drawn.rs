@@ -48,7 +48,6 @@ impl From<Frame> for Drawn {
 /// The frames and files of a run, once all pictures are drawn.
 #[derive(Default)]
 pub(in super::super) struct Written {
-    /// A frame for each picture.
     pub(in super::super) pictures: Vec<Frame>,
     /// The frames that these are made of, where they are several each.
     pub(in super::super) faces: Vec<Frame>,

@@ -125,7 +125,6 @@ pub(super) struct Plan {
 }
 
 impl PictureArgs {
-    /// How what is measured is printed.
     pub(super) fn answer(&self) -> Answer {
         match (self.json, self.json_lines) {
             (true, _) => Answer::Document,
@@ -275,7 +274,6 @@ impl Destination<'_> {
         }
     }
 
-    /// The file of a picture.
     fn file(&self, number: usize, name: &str) -> Option<PathBuf> {
         match &self.place {
             Place::Nowhere => None,
@@ -396,7 +394,6 @@ impl Destination<'_> {
     }
 }
 
-/// Fails where two pictures would be one file.
 fn check_distinct<T>(
     planned: &[Planned<T>],
     called: impl Fn(&T) -> (usize, String),

@@ -3,7 +3,6 @@
 use std::fmt;
 use std::str::FromStr;
 
-/// One part of so many.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(in super::super) struct Part {
     /// From 1.

@@ -11,7 +11,6 @@ use rara::{Mode, Plane, Projection, Shape};
 use super::viewpoint::Walk;
 use crate::values;
 
-/// An action.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Action {
     /// Turn the view: what is in front goes right and down, degrees.
@@ -26,7 +25,6 @@ pub(super) enum Action {
     OtherWalk,
     Projection(Projection),
     OtherProjection,
-    /// Go back to the start.
     Reset,
     /// Take the next camera of the file.
     NextView,
@@ -59,7 +57,6 @@ pub(super) enum Action {
     Quit,
 }
 
-/// A layer.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Which {
     /// By its number from 1, as keys have it.
@@ -77,7 +74,6 @@ impl fmt::Display for Which {
     }
 }
 
-/// The clip to edit.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Edit {
     /// The next one: of the layers after that of the frame.

@@ -33,7 +33,6 @@ pub(super) enum Sent {
     Read(Box<Result<Fresh, Failure>>),
 }
 
-/// The description of a window to be opened.
 pub(super) struct Start {
     pub(super) device: HeadlessDesc,
     pub(super) size: (u32, u32),

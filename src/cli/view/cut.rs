@@ -20,7 +20,6 @@ pub(super) struct Cut {
     held: usize,
     /// The point that the held shape is turned about and scaled from, once it was moved; until then it is its middle.
     pivot: Option<DVec3>,
-    /// The scene's middle.
     centre: DVec3,
 }
 
@@ -71,7 +70,6 @@ impl Cut {
             .unwrap_or_default()
     }
 
-    /// The clip in force.
     pub(super) fn clip(&self) -> Clip {
         joined(self.expressions(), self.op)
     }
@@ -84,7 +82,6 @@ impl Cut {
         }
     }
 
-    /// How they combine.
     pub(super) fn op(&self) -> ClipOp {
         self.op
     }
@@ -100,7 +97,6 @@ impl Cut {
         self.held
     }
 
-    /// The shape that is held.
     pub(super) fn shape(&self) -> Shape {
         let shapes = self.shapes();
         shapes[self.held.min(shapes.len() - 1)]
@@ -112,7 +108,6 @@ impl Cut {
         self.pivot.unwrap_or(self.shape().middle(self.centre))
     }
 
-    /// Holds the next shape.
     pub(super) fn next(&mut self) {
         self.held = (self.held + 1) % self.shapes().len();
         self.pivot = None;

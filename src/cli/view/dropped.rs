@@ -10,7 +10,6 @@ use crate::failure::Failure;
 use crate::json_kind::{self, JsonKind};
 use crate::{scene_file, training};
 
-/// What a file has.
 #[derive(Debug)]
 pub(super) enum Dropped {
     /// A scene, which is yet to be read.

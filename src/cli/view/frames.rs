@@ -20,7 +20,6 @@ const TITLE_PAUSE: Duration = Duration::from_millis(200);
 const INTERVALS: usize = 10_000;
 
 impl Viewer {
-    /// Draws a frame and shows it.
     pub(super) fn draw(&mut self) -> Result<(), Failure> {
         let Some(size) = self.windowed.fit(self.size())? else {
             // An event will report the next size.

@@ -71,7 +71,6 @@ impl Cut {
         self.turn(DQuat::from_scaled_axis(about));
     }
 
-    /// Scales the held shape about its middle.
     pub(super) fn scale(&mut self, factor: f64) {
         self.about_middle(DQuat::IDENTITY, factor);
     }

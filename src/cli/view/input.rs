@@ -134,7 +134,6 @@ impl Input {
         down(MouseButton::Left).then_some(Action::Turn(degrees))
     }
 
-    /// Handles a turn of the wheel.
     pub(super) fn wheel(&self, delta: MouseScrollDelta) -> Action {
         let (across, lines) = match delta {
             MouseScrollDelta::LineDelta(across, lines) => (across.into(), lines.into()),

@@ -22,7 +22,6 @@ pub(super) struct Clips {
     edited: Option<usize>,
     /// The flags that were typed, which make layers of files.
     typed: Vec<String>,
-    /// The scene's middle.
     centre: DVec3,
     /// True when the window's scene is not yet as these say.
     changed: bool,

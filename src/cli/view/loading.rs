@@ -38,7 +38,6 @@ pub(super) const TICK: Duration = Duration::from_millis(100);
 /// The time in which a bar that knows no share goes from end to end.
 const ROUND: f64 = 1.5;
 
-/// A scene that is being read.
 pub(super) struct Loading {
     begun: Instant,
     now: Arc<Mutex<Now>>,

@@ -36,7 +36,6 @@ pub(super) fn unless_lost<T>(work: impl FnOnce() -> T) -> Option<T> {
     }
 }
 
-/// The failure to report.
 pub(super) fn failure() -> Failure {
     let message = "the window was lost: the connection to its display (the X server) ended; start rara view again";
     Error::Device(message.into()).into()

@@ -173,7 +173,6 @@ impl Begin {
         Self::Views(views, Regions::default())
     }
 
-    /// The size of the window.
     fn size(&self, camera: &CameraArgs) -> Result<(u32, u32), Failure> {
         match self {
             Self::Views(Views::Given(views), _) => {

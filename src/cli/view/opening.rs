@@ -15,7 +15,6 @@ use crate::output;
 use crate::scene_file::LayerClip;
 
 impl Viewer {
-    /// Begins to read a scene.
     pub(super) fn load(&mut self, load: Load) -> Result<(), Failure> {
         let proxy = self.proxy.clone();
         // Where the event loop has ended nobody waits for the scene.

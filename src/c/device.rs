@@ -145,9 +145,9 @@ pub unsafe extern "C" fn rara_adopt_desc_default(
     guard(|| write(desc, desc_size, &RaraAdoptDesc::new(), "desc"))
 }
 
-/// Works with the host's device. Nothing in `desc` is ever destroyed, and only rara_scene_buffers_upload,
-/// rara_scene_buffers_upload_layers and rara_renderer_channels submit to the queue. RARA_ERROR_INVALID names an extension that
-/// the description claims and whose functions the device does not have. Features that are claimed cannot be checked.
+/// Works with the host's device. Nothing in `desc` is ever destroyed, and only rara_scene_buffers_upload and
+/// rara_renderer_channels submit to the queue. RARA_ERROR_INVALID names an extension that the description claims and whose
+/// functions the device does not have. Features that are claimed cannot be checked.
 ///
 /// # Safety
 /// The handles belong together, are as the description says, and outlive all that is made from the RaraDevice, of which

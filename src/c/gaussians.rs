@@ -1,16 +1,12 @@
 //! A scene in the host's memory, and from files.
 
-use std::ffi::c_char;
-use std::io::Cursor;
-
 use rara::Gaussians;
 use rara::ash::vk;
-use rara::scene::{Bounds, LoadReport, Loaded, Property, load, load_from};
+use rara::scene::{Bounds, LoadReport, Property};
 
-use crate::boundary::{RaraResult, guard, invalid, list, versioned, write};
-use crate::handles::{alive, alone, create, destroy};
+use crate::boundary::{RaraResult, guard, invalid, versioned, write};
+use crate::handles::{alive, alone, destroy};
 use crate::numbering::Part;
-use crate::text;
 
 /// A scene in the host's memory. It may be destroyed once it is on the device. Several threads may read it at once.
 pub struct RaraGaussians {
@@ -21,15 +17,6 @@ pub struct RaraGaussians {
     pub(crate) properties: Vec<Property>,
     /// Where selections have divided a set, which part of it they are.
     pub(crate) part: Option<Part>,
-}
-
-impl From<Loaded> for RaraGaussians {
-    fn from(loaded: Loaded) -> Self {
-        Self {
-            report: loaded.report,
-            ..loaded.gaussians.into()
-        }
-    }
 }
 
 impl From<Gaussians> for RaraGaussians {
@@ -67,41 +54,6 @@ pub struct RaraGaussiansInfo {
 }
 
 versioned!(RaraGaussiansInfo);
-
-/// Loads a scene: 3DGS .ply (ascii or binary, spherical harmonics of degree 0 to 3), .compressed.ply, .splat, .ksplat, .spz,
-/// SOG (an archive, its folder or meta.json) or glTF with KHR_gaussian_splatting. The format is found by what is in the file.
-///
-/// `path` is UTF-8, or on Unix whatever the file system takes.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn rara_gaussians_load(
-    path: *const c_char,
-    gaussians: *mut *mut RaraGaussians,
-) -> RaraResult {
-    guard(|| {
-        create(gaussians, "gaussians", || {
-            let path = text::path(path, "path")?;
-            load(&path, &mut |_, _| ()).map(RaraGaussians::from)
-        })
-    })
-}
-
-/// Loads a scene that is in memory, such as an archive's entry, in any format that is one file. `name` stands for it in
-/// messages.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn rara_gaussians_load_from(
-    data: *const u8,
-    size: usize,
-    name: *const c_char,
-    gaussians: *mut *mut RaraGaussians,
-) -> RaraResult {
-    guard(|| {
-        create(gaussians, "gaussians", || {
-            let name = text::path(name, "name")?;
-            let source = Cursor::new(list(data, size, "data")?);
-            load_from(source, &name, &mut |_, _| ()).map(RaraGaussians::from)
-        })
-    })
-}
 
 /// Appends another scene to one, so that both are sorted and composited as one. Properties that both have
 /// stay, for rara_gaussians_select.

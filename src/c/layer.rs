@@ -8,13 +8,11 @@ use rara::{Error, LayerState, Result};
 
 use crate::boundary::{RaraResult, guard, invalid, read, read_list, versioned, write};
 use crate::clip::{self, RaraClip};
-use crate::device::RaraDevice;
 use crate::gaussians::RaraGaussians;
 use crate::handles::{alive, alone};
 use crate::layer_info::check_index;
 use crate::placement::RaraPlacement;
-use crate::scene::{self, GivenLayer, RaraSceneBuffers, RaraShFormat};
-use crate::staging::RaraStaging;
+use crate::scene::{GivenLayer, RaraSceneBuffers};
 use crate::text::text;
 
 /// The state of a layer, which may change from frame to frame.
@@ -144,55 +142,6 @@ pub unsafe extern "C" fn rara_layer_default(
 ) -> RaraResult {
     let default = RaraLayer::new(name, gaussians);
     guard(|| write(layer, layer_size, &default, "layer"))
-}
-
-/// Uploads a scene of several layers as rara_scene_buffers_upload does one of a single layer. The layers are sorted and
-/// blended together, wherever they reach into each other. Where two Gaussians are equally deep, the earlier layer's is in
-/// front; of those that rara_gaussians_select has divided the one is that was before the other.
-///
-/// # Safety
-/// `device` is alive; `layers` points to `layer_count` layers, which are as their fields say and all of one struct_size;
-/// nobody else uses the queue meanwhile; `scene` may be overwritten.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn rara_scene_buffers_upload_layers(
-    device: *const RaraDevice,
-    layers: *const RaraLayer,
-    layer_count: usize,
-    sh_format: RaraShFormat,
-    scene: *mut *mut RaraSceneBuffers,
-) -> RaraResult {
-    scene::upload(device, sh_format, scene, || given(layers, layer_count))
-}
-
-/// Bytes of staging memory that rara_scene_buffers_upload_layers_with needs for a scene.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn rara_scene_buffers_staging_bytes_of_layers(
-    layers: *const RaraLayer,
-    layer_count: usize,
-    sh_format: RaraShFormat,
-    bytes: *mut u64,
-) -> RaraResult {
-    scene::staging_bytes(sh_format, bytes, || given(layers, layer_count))
-}
-
-/// Uploads a scene of several layers as rara_scene_buffers_upload_with does one of a single layer. `layers` and what they
-/// point to may be freed when it returns.
-///
-/// # Safety
-/// As for rara_scene_buffers_upload_with and, for the layers, as for rara_scene_buffers_upload_layers.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn rara_scene_buffers_upload_layers_with(
-    device: *const RaraDevice,
-    cmd: vk::CommandBuffer,
-    staging: *const RaraStaging,
-    layers: *const RaraLayer,
-    layer_count: usize,
-    sh_format: RaraShFormat,
-    scene: *mut *mut RaraSceneBuffers,
-) -> RaraResult {
-    scene::upload_with(device, cmd, staging, sh_format, scene, || {
-        given(layers, layer_count)
-    })
 }
 
 /// The state of a layer, as it was uploaded or last set; its rotation has length one. `state_size` is sizeof *state.

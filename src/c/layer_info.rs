@@ -15,8 +15,7 @@ use crate::text::text;
 pub struct RaraLayerInfo {
     /// Set by rara_scene_buffers_layer_info.
     pub struct_size: usize,
-    /// Its name: UTF-8, ends in NUL, lives as long as the RaraSceneBuffers. A scene of rara_scene_buffers_upload or
-    /// rara_scene_buffers_upload_with has one layer, named "scene".
+    /// Its name: UTF-8, ends in NUL, lives as long as the RaraSceneBuffers.
     pub name: *const c_char,
     /// Gaussians in the layer.
     pub count: u64,

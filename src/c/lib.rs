@@ -30,6 +30,7 @@ mod handles;
 pub mod layer;
 pub mod layer_info;
 pub mod lent;
+pub mod load;
 pub mod logging;
 pub mod matrices;
 #[cfg(test)]
@@ -49,5 +50,6 @@ pub mod support;
 #[cfg(test)]
 mod tests;
 mod text;
+pub mod upload;
 #[cfg(test)]
 mod versions;

@@ -18,6 +18,7 @@ use crate::frame::*;
 use crate::gaussians::*;
 use crate::layer::*;
 use crate::layer_info::*;
+use crate::load::*;
 use crate::logging::*;
 use crate::matrices::*;
 use crate::picker::*;
@@ -32,6 +33,7 @@ use crate::staging::*;
 use crate::stats::*;
 use crate::support::*;
 use crate::tests::{assert_fails, message};
+use crate::upload::*;
 
 thread_local! {
     static PANIC: Cell<bool> = const { Cell::new(false) };

@@ -1,10 +1,9 @@
 //! Selections: Gaussians that fulfil a predicate become Gaussians of their own, which a scene has as a layer.
 
 use std::ffi::c_char;
-use std::io::Cursor;
 use std::sync::Arc;
 
-use rara::scene::{Loaded, Predicate, Property, load_from_with, load_with};
+use rara::scene::{Predicate, Property};
 use rara::{Error, Placement, Result};
 
 use crate::boundary::{RaraResult, guard, invalid, list};
@@ -12,46 +11,7 @@ use crate::gaussians::RaraGaussians;
 use crate::handles::{alone, create};
 use crate::numbering::Part;
 use crate::placement::RaraPlacement;
-use crate::text::{self, text};
-
-/// Loads a scene as rara_gaussians_load does, with what rara_gaussians_select will ask for: the properties that the file's
-/// `vertex` element has beside those of a Gaussian, such as labels, and that any of these predicates compares. Each takes 8
-/// bytes a Gaussian. RARA_ERROR_FORMAT where the file has no such property.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn rara_gaussians_load_with(
-    path: *const c_char,
-    predicates: *const *const c_char,
-    predicate_count: usize,
-    gaussians: *mut *mut RaraGaussians,
-) -> RaraResult {
-    guard(|| {
-        create(gaussians, "gaussians", || {
-            let path = text::path(path, "path")?;
-            let predicates = parsed(predicates, predicate_count)?;
-            load_with(&path, &compared(&predicates), &mut |_, _| ()).map(made)
-        })
-    })
-}
-
-/// Loads a scene that is in memory as rara_gaussians_load_from does, with properties as rara_gaussians_load_with does.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn rara_gaussians_load_from_with(
-    data: *const u8,
-    size: usize,
-    name: *const c_char,
-    predicates: *const *const c_char,
-    predicate_count: usize,
-    gaussians: *mut *mut RaraGaussians,
-) -> RaraResult {
-    guard(|| {
-        create(gaussians, "gaussians", || {
-            let name = text::path(name, "name")?;
-            let source = Cursor::new(list(data, size, "data")?);
-            let predicates = parsed(predicates, predicate_count)?;
-            load_from_with(source, &name, &compared(&predicates), &mut |_, _| ()).map(made)
-        })
-    })
-}
+use crate::text::text;
 
 /// Gives each Gaussian a number of the host's own, such as a label, for the predicates of rara_gaussians_select: a property
 /// of this name, in place of one that it had. `count` is that of the Gaussians. The values are copied; one that is no number
@@ -89,7 +49,7 @@ pub unsafe extern "C" fn rara_gaussians_set_property(
 /// selected from again.
 ///
 /// `predicate` is what the program's `--select` takes: comparisons as "opacity>0.5", "size<=0.01", "red>0.6" and "label in
-/// 3,4,7..9", where label is a property of rara_gaussians_load_with or rara_gaussians_set_property, and
+/// 3,4,7..9", where label is a property of rara_gaussians_load or rara_gaussians_set_property, and
 /// "inside(sphere:0,0,0,1)", which takes any expression of rara_clip_parse; joined by `and`, `or`, `not` and ( ).
 /// RARA_ERROR_INVALID says what is wrong and in which column, and names a property that is not there.
 ///
@@ -122,7 +82,7 @@ impl RaraGaussians {
             if self.properties.iter().all(|own| own.name != name) {
                 return invalid(format!(
                     "the predicate compares the property '{name}', which the Gaussians have not: load them by \
-                     rara_gaussians_load_with and this predicate, or give values by rara_gaussians_set_property"
+                     rara_gaussians_load and this predicate, or give values by rara_gaussians_set_property"
                 ));
             }
         }
@@ -198,34 +158,10 @@ fn take(property: &mut Property, is_taken: &[bool]) -> Property {
     taken
 }
 
-fn made((loaded, properties): (Loaded, Vec<Property>)) -> RaraGaussians {
-    RaraGaussians {
-        properties,
-        ..loaded.into()
-    }
-}
-
 /// Reads a predicate, which `name` names in messages.
-fn parse(predicate: &str, name: &str) -> Result<Predicate> {
+pub(crate) fn parse(predicate: &str, name: &str) -> Result<Predicate> {
     let parsed = predicate.parse();
     parsed.map_err(|error: Error| Error::Invalid(format!("{name}: {error}")))
-}
-
-unsafe fn parsed(predicates: *const *const c_char, count: usize) -> Result<Vec<Predicate>> {
-    let predicates = list(predicates, count, "predicates")?;
-    let parsed = predicates.iter().enumerate().map(|(index, &predicate)| {
-        let name = format!("predicates[{index}]");
-        parse(text(predicate, &name)?, &name)
-    });
-    parsed.collect()
-}
-
-/// The names of the properties that predicates compare, each once.
-fn compared(predicates: &[Predicate]) -> Vec<&str> {
-    let mut names: Vec<_> = predicates.iter().flat_map(Predicate::properties).collect();
-    names.sort_unstable();
-    names.dedup();
-    names
 }
 
 #[cfg(test)]

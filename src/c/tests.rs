@@ -7,9 +7,10 @@ use crate::boundary::*;
 use crate::camera::*;
 use crate::camera_files::*;
 use crate::gaussians::*;
+use crate::load::*;
 use crate::placement::*;
-use crate::scene::*;
 use crate::settings::*;
+use crate::upload::*;
 
 pub(crate) fn message() -> String {
     // SAFETY: a string of this thread, which is copied before its next call.
@@ -233,15 +234,22 @@ fn scenes() {
     let mut scene = null_mut();
     // SAFETY: strings that end in NUL, bytes that are there, a pointer that is overwritten, handles that are alive.
     unsafe {
-        let result = rara_gaussians_load(c"no/such.ply".as_ptr(), &mut scene);
+        let result = rara_gaussians_load(c"no/such.ply".as_ptr(), null(), 0, &mut scene);
         assert_fails(result, RARA_ERROR_IO, "no/such.ply");
         assert!(scene.is_null());
         let load = |bytes: &[u8], scene: *mut *mut RaraGaussians| {
-            rara_gaussians_load_from(bytes.as_ptr(), bytes.len(), c"entry".as_ptr(), scene)
+            rara_gaussians_load_from(
+                bytes.as_ptr(),
+                bytes.len(),
+                c"entry".as_ptr(),
+                null(),
+                0,
+                scene,
+            )
         };
         assert_fails(load(b"nonsense", &mut scene), RARA_ERROR_FORMAT, "entry: ");
         assert_fails(load(b"", &mut scene), RARA_ERROR_FORMAT, "entry: ");
-        let nothing = rara_gaussians_load_from(null(), 9, c"entry".as_ptr(), &mut scene);
+        let nothing = rara_gaussians_load_from(null(), 9, c"entry".as_ptr(), null(), 0, &mut scene);
         assert_fails(nothing, RARA_ERROR_INVALID, "data is null");
 
         let made = rara::scene::generate(rara::scene::Kind::General, 50, 1);
@@ -249,7 +257,10 @@ fn scenes() {
         rara::scene::save_ply(&path, &made).expect("a temporary file");
         let name = CString::new(path.to_str().expect("UTF-8")).expect("no NUL");
         let mut other = null_mut();
-        assert_eq!(rara_gaussians_load(name.as_ptr(), &mut scene), RARA_OK);
+        assert_eq!(
+            rara_gaussians_load(name.as_ptr(), null(), 0, &mut scene),
+            RARA_OK
+        );
         assert_eq!(
             load(&std::fs::read(&path).expect("reads"), &mut other),
             RARA_OK
@@ -286,7 +297,7 @@ fn scenes() {
         );
         assert_eq!(framed, RARA_OK);
         assert!(camera.camera().is_ok());
-        let upload = rara_scene_buffers_upload(null(), scene, 0, &mut null_mut());
+        let upload = rara_scene_buffers_upload(null(), null(), 1, 0, &mut null_mut());
         assert_fails(upload, RARA_ERROR_INVALID, "device is null");
         rara_gaussians_destroy(scene);
         rara_gaussians_destroy(other);

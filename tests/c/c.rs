@@ -16,5 +16,6 @@ mod cpp_host;
 mod frames;
 mod header;
 mod install;
+mod layer;
 mod layouts;
 mod results;

@@ -8,6 +8,7 @@ use std::ptr::{null, null_mut};
 use super::{ALONE, Lines, keep};
 use crate::canvas::open_host;
 use crate::host::Host;
+use crate::layer::one_layer;
 use crate::results::assert_ok;
 use rara::ash::{Entry, vk};
 use rara_c::boundary::*;
@@ -15,11 +16,13 @@ use rara_c::camera::*;
 use rara_c::device::*;
 use rara_c::frame::*;
 use rara_c::gaussians::*;
+use rara_c::load::*;
 use rara_c::logging::*;
 use rara_c::renderer::*;
 use rara_c::renderer_desc::*;
 use rara_c::scene::*;
 use rara_c::stats::*;
+use rara_c::upload::*;
 
 const FORMAT: vk::Format = vk::Format::R16G16B16A16_SFLOAT;
 const VIEW: vk::Extent2D = vk::Extent2D {
@@ -116,11 +119,16 @@ fn a_frame_has_lines_for_those_who_embed() {
 
         let (text, mut gaussians, mut scene) = (file(), null_mut(), null_mut());
         let (data, size) = (text.as_ptr(), text.len());
-        let loaded = rara_gaussians_load_from(data, size, c"grid".as_ptr(), &mut gaussians);
+        let loaded =
+            rara_gaussians_load_from(data, size, c"grid".as_ptr(), null(), 0, &mut gaussians);
         assert_ok(loaded);
         let format = RARA_SH_FORMAT_PACKED;
         assert_ok(rara_scene_buffers_upload(
-            device, gaussians, format, &mut scene,
+            device,
+            &one_layer(gaussians),
+            1,
+            format,
+            &mut scene,
         ));
         has(
             &taken(),

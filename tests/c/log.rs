@@ -7,6 +7,7 @@ mod frame_lines;
 #[path = "../../tools/examples/host.rs"]
 #[allow(dead_code, reason = "its frames are for the hosts that draw")]
 mod host;
+mod layer;
 mod results;
 
 use std::ffi::{CStr, c_char, c_void};

@@ -73,14 +73,16 @@ int main(int count, char **arguments) {
     RaraDevice *lent;
     RARA(rara_device_adopt(&adopt, &lent));
     RaraGaussians *gaussians;
-    RARA(rara_gaussians_load(arguments[1], &gaussians));
+    RARA(rara_gaussians_load(arguments[1], nullptr, 0, &gaussians));
     RaraGaussiansInfo scene_info;
     RARA(rara_gaussians_info(gaussians, &scene_info, sizeof scene_info));
     RaraCamera camera;
     const double up[3]{0, -1, 0};
     RARA(rara_camera_frame(gaussians, up, 50, W, H, &camera, sizeof camera));
     RaraSceneBuffers *scene;
-    RARA(rara_scene_buffers_upload(lent, gaussians, RARA_SH_FORMAT_PACKED, &scene));
+    RaraLayer layer;
+    RARA(rara_layer_default(&layer, sizeof layer, "scene", gaussians));
+    RARA(rara_scene_buffers_upload(lent, &layer, 1, RARA_SH_FORMAT_PACKED, &scene));
     rara_gaussians_destroy(gaussians);
     RaraDepthDesc tested;
     RARA(rara_depth_desc_default(&tested, sizeof tested, DEPTH, REVERSED));

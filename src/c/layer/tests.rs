@@ -7,6 +7,7 @@ use crate::boundary::*;
 use crate::gaussians::*;
 use crate::scene::*;
 use crate::tests::assert_fails;
+use crate::upload::*;
 
 /// Bytes of staging memory that layers need: a call that reads them without a device.
 ///
@@ -15,7 +16,7 @@ use crate::tests::assert_fails;
 unsafe fn staging(layers: *const RaraLayer, count: usize, bytes: &mut u64) -> RaraResult {
     let format = RARA_SH_FORMAT_HALF;
     // SAFETY: the caller's promise.
-    unsafe { rara_scene_buffers_staging_bytes_of_layers(layers, count, format, bytes) }
+    unsafe { rara_scene_buffers_staging_bytes(layers, count, format, bytes) }
 }
 
 /// Gaussians as C has them.

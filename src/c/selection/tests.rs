@@ -10,6 +10,7 @@ use crate::boundary::*;
 use crate::clip::{rara_clip_destroy, rara_clip_parse};
 use crate::gaussians::*;
 use crate::handles::alive;
+use crate::load::*;
 use crate::tests::assert_fails;
 
 /// Five Gaussians with a label each.
@@ -31,7 +32,7 @@ fn load_for(predicates: &[&CStr]) -> (RaraResult, *mut RaraGaussians) {
     // SAFETY: bytes that are there, strings that end in NUL, a pointer that may be overwritten.
     let result = unsafe {
         let (data, name) = (SCENE.as_ptr(), c"entry".as_ptr());
-        rara_gaussians_load_from_with(
+        rara_gaussians_load_from(
             data,
             SCENE.len(),
             name,
@@ -233,7 +234,7 @@ fn what_is_no_selection_says_where_it_is_wrong() {
         ),
         (
             c"label=3",
-            "the property 'label', which the Gaussians have not: load them by rara_gaussians_load_with",
+            "the property 'label', which the Gaussians have not: load them by rara_gaussians_load",
         ),
     ] {
         let (result, taken) = select(made, text);

@@ -39,11 +39,16 @@ fn what_was_destroyed_is_refused_and_the_device_is_released_at_last() {
 
         let (mut gaussians, mut scene, mut renderer) = (null_mut(), null_mut(), null_mut());
         let (data, size) = (SCENE.as_ptr(), SCENE.len());
-        let loaded = rara_gaussians_load_from(data, size, c"one".as_ptr(), &mut gaussians);
+        let loaded =
+            rara_gaussians_load_from(data, size, c"one".as_ptr(), null(), 0, &mut gaussians);
         assert_ok(loaded);
         let format = RARA_SH_FORMAT_HALF;
         assert_ok(rara_scene_buffers_upload(
-            device, gaussians, format, &mut scene,
+            device,
+            &one_layer(gaussians),
+            1,
+            format,
+            &mut scene,
         ));
         let mut camera: RaraCamera = std::mem::zeroed();
         let up = [0.0, -1.0, 0.0];
@@ -73,7 +78,8 @@ fn what_was_destroyed_is_refused_and_the_device_is_released_at_last() {
 
         rara_gaussians_destroy(gaussians);
         let mut again = null_mut();
-        let failed = rara_scene_buffers_upload(device, gaussians, format, &mut again);
+        let failed =
+            rara_scene_buffers_upload(device, &one_layer(gaussians), 1, format, &mut again);
         assert_fails(
             failed,
             RARA_ERROR_INVALID,
@@ -102,7 +108,7 @@ fn what_was_destroyed_is_refused_and_the_device_is_released_at_last() {
         rara_scene_buffers_destroy(scene);
         // A handle of another kind.
         let mut other = null_mut();
-        let loaded = rara_gaussians_load_from(data, size, c"one".as_ptr(), &mut other);
+        let loaded = rara_gaussians_load_from(data, size, c"one".as_ptr(), null(), 0, &mut other);
         assert_ok(loaded);
         let failed = configure(other.cast::<RaraSceneBuffers>());
         assert_fails(failed, RARA_ERROR_INVALID, "scene is no RaraSceneBuffers");

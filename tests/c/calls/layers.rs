@@ -21,8 +21,7 @@ pub(super) unsafe fn what_is_wrong_is_said(
         assert_ok(filled);
         let mut other = null_mut();
         let mut upload = |layers: *const RaraLayer, count, format| {
-            let result =
-                rara_scene_buffers_upload_layers(device, layers, count, format, &mut other);
+            let result = rara_scene_buffers_upload(device, layers, count, format, &mut other);
             assert!(other.is_null());
             result
         };

@@ -80,9 +80,17 @@ fn a_lost_device_has_a_code_of_its_own() {
             data,
             size,
             c"one".as_ptr(),
+            null(),
+            0,
             &mut gaussians,
         ));
-        let lost = rara_scene_buffers_upload(device, gaussians, RARA_SH_FORMAT_HALF, &mut scene);
+        let lost = rara_scene_buffers_upload(
+            device,
+            &one_layer(gaussians),
+            1,
+            RARA_SH_FORMAT_HALF,
+            &mut scene,
+        );
         assert_fails(
             lost,
             RARA_ERROR_DEVICE_LOST,

@@ -11,6 +11,7 @@ use std::ptr::{null, null_mut};
 use crate::canvas::{ONE_PIXEL, open_host};
 use crate::clips::clip_of;
 use crate::host::Host;
+use crate::layer::one_layer;
 use crate::results::{assert_fails, assert_ok};
 use rara::ash::{Entry, vk};
 use rara_c::boundary::*;
@@ -20,11 +21,13 @@ use rara_c::depth::*;
 use rara_c::device::*;
 use rara_c::frame::*;
 use rara_c::gaussians::*;
+use rara_c::load::*;
 use rara_c::renderer::*;
 use rara_c::renderer_desc::*;
 use rara_c::scene::*;
 use rara_c::stats::*;
 use rara_c::support::*;
+use rara_c::upload::*;
 
 const FORMAT: vk::Format = vk::Format::R16G16B16A16_SFLOAT;
 
@@ -125,13 +128,24 @@ fn what_is_wrong_is_said() {
         assert_ok(rara_device_adopt(&desc, &mut device));
 
         let (mut gaussians, mut scene) = (null_mut(), null_mut());
-        let loaded =
-            rara_gaussians_load_from(SCENE.as_ptr(), SCENE.len(), c"one".as_ptr(), &mut gaussians);
+        let loaded = rara_gaussians_load_from(
+            SCENE.as_ptr(),
+            SCENE.len(),
+            c"one".as_ptr(),
+            null(),
+            0,
+            &mut gaussians,
+        );
         assert_ok(loaded);
-        let failed = rara_scene_buffers_upload(device, gaussians, 4, &mut scene);
+        let failed = rara_scene_buffers_upload(device, &one_layer(gaussians), 1, 4, &mut scene);
         assert_fails(failed, RARA_ERROR_INVALID, "sh_format 4");
-        let uploaded =
-            rara_scene_buffers_upload(device, gaussians, RARA_SH_FORMAT_FLOAT, &mut scene);
+        let uploaded = rara_scene_buffers_upload(
+            device,
+            &one_layer(gaussians),
+            1,
+            RARA_SH_FORMAT_FLOAT,
+            &mut scene,
+        );
         assert_ok(uploaded);
         assert!(rara_scene_buffers_bytes(scene) > 0);
         layers::what_is_wrong_is_said(device, gaussians, scene);

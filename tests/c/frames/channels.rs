@@ -52,16 +52,6 @@ fn room(aovs: RaraAovs, values: &mut [f32]) -> RaraChannels {
     }
 }
 
-fn layer_in_c(gaussians: *mut RaraGaussians) -> RaraLayer {
-    // SAFETY: the struct may hold any bytes, and has the room that the call is given.
-    unsafe {
-        let mut layer: RaraLayer = std::mem::zeroed();
-        let (size, name) = (size_of_val(&layer), c"one".as_ptr());
-        assert_ok(rara_layer_default(&mut layer, size, name, gaussians));
-        layer
-    }
-}
-
 /// Makes a renderer, which `test` uses.
 pub(super) fn with_renderer(device: *mut RaraDevice, test: impl FnOnce(*mut RaraRenderer)) {
     let mut renderer = null_mut();
@@ -106,7 +96,7 @@ fn channels_are_those_of_a_headless_renderer() {
                 let (mut cut, mut kept) = (null_mut(), null_mut());
                 assert_ok(rara_clip_parse(text.as_ptr(), &mut cut));
                 assert_ok(rara_clip_parse(whole.as_ptr(), &mut kept));
-                let mut layers = [layer_in_c(ours.gaussians); 2];
+                let mut layers = [one_layer(ours.gaussians); 2];
                 let state = RaraLayerState::from(state);
                 (layers[1].state, layers[1].clip) = (&state, kept);
                 let camera = RaraCamera::from(camera);
@@ -156,7 +146,7 @@ fn channels_are_of_a_scene_where_the_renderer_places_it() {
             unsafe {
                 let placement = RaraPlacement::from(placed);
                 assert_ok(rara_renderer_set_placement(renderer, &placement));
-                let (layer, camera) = (layer_in_c(ours.gaussians), RaraCamera::from(camera));
+                let (layer, camera) = (one_layer(ours.gaussians), RaraCamera::from(camera));
                 let room = room(ALL, &mut values);
                 assert_ok(rara_renderer_channels(
                     renderer,
@@ -189,7 +179,7 @@ fn what_is_wrong_with_channels_is_said() {
         with_renderer(ours.device, |renderer| {
             let mut values = vec![-7.0; PIXELS];
             let camera = RaraCamera::from(camera(scene));
-            let layer = layer_in_c(ours.gaussians);
+            let layer = one_layer(ours.gaussians);
             let usual = room(RARA_AOV_DEPTH, &mut values);
             // SAFETY: the handles are alive, and the pointers are null, or point to what they say.
             let draw = |count, camera: &RaraCamera, room: *const RaraChannels| unsafe {

@@ -47,7 +47,7 @@ fn layers_are_the_same_bytes() {
         // SAFETY: the layers are alive, the pointer may be overwritten.
         unsafe {
             let layers = layers_in_c(gaussians, [null(); 2]);
-            assert_ok(rara_scene_buffers_upload_layers(
+            assert_ok(rara_scene_buffers_upload(
                 ours.device,
                 layers.as_ptr(),
                 layers.len(),
@@ -105,12 +105,12 @@ fn layers_are_the_same_bytes() {
             let (mut bytes, staged) = (0, Cell::new(null_mut()));
             // SAFETY: the handles and the memory are alive; the scene is when its frame has been waited for.
             unsafe {
-                assert_ok(rara_scene_buffers_staging_bytes_of_layers(
+                assert_ok(rara_scene_buffers_staging_bytes(
                     list, count, format, &mut bytes,
                 ));
                 let (_memory, staging) = staging(device, bytes);
                 let drawn = world.drawn_in_c(ours.device, &canvas, |cmd| {
-                    assert_ok(rara_scene_buffers_upload_layers_with(
+                    assert_ok(rara_scene_buffers_upload_with(
                         ours.device,
                         cmd,
                         &staging,

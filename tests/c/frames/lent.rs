@@ -123,8 +123,13 @@ fn a_hosts_memory_draws_the_same_bytes_and_comes_back() {
             }
             lender.refuses.store(true, Ordering::Relaxed);
             let (mut none, format) = (null_mut(), RARA_SH_FORMAT_PACKED);
-            let result: RaraResult =
-                rara_scene_buffers_upload(ours.device, ours.gaussians, format, &mut none);
+            let result: RaraResult = rara_scene_buffers_upload(
+                ours.device,
+                &one_layer(ours.gaussians),
+                1,
+                format,
+                &mut none,
+            );
             assert_fails(result, RARA_ERROR_MEMORY, "ERROR_OUT_OF_DEVICE_MEMORY");
             assert!(none.is_null());
             rara_scene_buffers_destroy(uploaded);

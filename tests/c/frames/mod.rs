@@ -17,6 +17,7 @@ use std::ptr::null_mut;
 
 use crate::canvas::{Canvas, with_host};
 use crate::folder::Folder;
+use crate::layer::one_layer;
 use crate::results::assert_ok;
 use ours::{Ours, saved, saved_as};
 use rara::ash::{Entry, vk};
@@ -27,7 +28,9 @@ use rara::scene::{Kind, generate};
 use rara::{Gaussians, Placement, Projection, Raster, Scene, SceneBuffers, ShFormat};
 use rara_c::device::*;
 use rara_c::gaussians::*;
+use rara_c::load::*;
 use rara_c::scene::*;
+use rara_c::upload::*;
 use world::World;
 
 type Pixels = Vec<[f32; 4]>;

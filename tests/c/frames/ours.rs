@@ -2,6 +2,7 @@
 
 use std::ffi::CString;
 use std::path::{Path, PathBuf};
+use std::ptr::null;
 
 use super::*;
 use rara::scene::{generate, load, save_ply};
@@ -71,7 +72,13 @@ impl Ours {
         let (mut scene, format) = (null_mut(), RARA_SH_FORMAT_PACKED);
         // SAFETY: both are alive, and the pointer may be overwritten.
         assert_ok(unsafe {
-            rara_scene_buffers_upload(self.device, self.gaussians, format, &mut scene)
+            rara_scene_buffers_upload(
+                self.device,
+                &one_layer(self.gaussians),
+                1,
+                format,
+                &mut scene,
+            )
         });
         scene
     }
@@ -94,6 +101,6 @@ pub(super) fn loaded_in_c(path: &Path) -> *mut RaraGaussians {
     let mut gaussians = null_mut();
     let name = CString::new(path.to_str().expect("UTF-8")).expect("no NUL");
     // SAFETY: the name ends in NUL, and the pointer may be overwritten.
-    assert_ok(unsafe { rara_gaussians_load(name.as_ptr(), &mut gaussians) });
+    assert_ok(unsafe { rara_gaussians_load(name.as_ptr(), null(), 0, &mut gaussians) });
     gaussians
 }

@@ -122,7 +122,7 @@ fn layers_have_regions_of_their_own() {
                 assert_ok(filled);
                 layer
             });
-            assert_ok(rara_scene_buffers_upload_layers(
+            assert_ok(rara_scene_buffers_upload(
                 ours.device,
                 layers.as_ptr(),
                 layers.len(),

@@ -94,7 +94,7 @@ fn selections_are_the_same_bytes() {
                             layer
                         })
                         .collect();
-                    assert_ok(rara_scene_buffers_upload_layers(
+                    assert_ok(rara_scene_buffers_upload(
                         ours.device,
                         layers.as_ptr(),
                         layers.len(),

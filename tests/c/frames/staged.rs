@@ -24,7 +24,8 @@ unsafe fn upload_with(
                 ours.device,
                 cmd,
                 &staging,
-                ours.gaussians,
+                &one_layer(ours.gaussians),
+                1,
                 format,
                 scene,
             )
@@ -68,7 +69,7 @@ fn a_scene_by_the_hosts_own_staging_memory_is_the_same_bytes() {
         // SAFETY: the handles are alive, and the number may be overwritten.
         unsafe {
             let ask = |format, bytes: &mut u64| {
-                rara_scene_buffers_staging_bytes(ours.gaussians, format, bytes)
+                rara_scene_buffers_staging_bytes(&one_layer(ours.gaussians), 1, format, bytes)
             };
             assert_fails(ask(4, &mut needed), RARA_ERROR_INVALID, "sh_format 4");
             assert_ok(ask(RARA_SH_FORMAT_PACKED, &mut needed));

@@ -3,6 +3,8 @@
 use clap::Args;
 use rara::{PhiForm, Precision, Preset, ShFormat, TargetFormat};
 
+use super::values;
+
 /// The precision that is given up for time. A single choice overrides the preset's.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Precision")]
@@ -56,20 +58,14 @@ impl PrecisionArgs {
     }
 }
 
-/// A size, zero included.
 fn switch(text: &str) -> Result<f32, String> {
-    match text.parse::<f32>() {
-        Ok(number) if number >= 0.0 && number.is_finite() => Ok(number),
-        _ => Err("expected a finite number, zero or above".into()),
-    }
+    let is = |x: f32| x >= 0.0 && x.is_finite();
+    values::number(text, is, "a finite number, zero or above")
 }
 
-/// A share, one excluded.
 fn transmittance(text: &str) -> Result<f32, String> {
-    match text.parse::<f32>() {
-        Ok(number) if (0.0..1.0).contains(&number) => Ok(number),
-        _ => Err("expected a number from zero to below 1".into()),
-    }
+    let is = |x: f32| (0.0..1.0).contains(&x);
+    values::number(text, is, "a number from zero to below 1")
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
+use std::str::FromStr;
 
 use clap::builder::{OsStringValueParser, TypedValueParser};
 use glam::{DQuat, DVec3};
@@ -106,27 +107,36 @@ fn hexadecimal(digits: &str) -> Option<[f32; 3]> {
     }
 }
 
+/// A number that is as `expected`.
+pub(super) fn number<T: FromStr + Copy>(
+    text: &str,
+    is: impl Fn(T) -> bool,
+    expected: &str,
+) -> Result<T, String> {
+    let number = text.parse().ok().filter(|number| is(*number));
+    number.ok_or_else(|| format!("expected {expected}"))
+}
+
 pub(super) fn finite(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(number) if number.is_finite() => Ok(number),
-        _ => Err("expected a finite number".into()),
-    }
+    number(text, f64::is_finite, "a finite number")
 }
 
 /// A number above zero that single precision can hold.
 pub(super) fn positive(text: &str) -> Result<f32, String> {
-    match text.parse::<f32>() {
-        Ok(number) if number > 0.0 && number.is_finite() => Ok(number),
-        _ => Err("expected a finite number above zero".into()),
-    }
+    number(
+        text,
+        |x: f32| x > 0.0 && x.is_finite(),
+        "a finite number above zero",
+    )
 }
 
 /// A number of zero or more that single precision can hold.
 pub(super) fn not_negative(text: &str) -> Result<f32, String> {
-    match text.parse::<f32>() {
-        Ok(number) if number >= 0.0 && number.is_finite() => Ok(number),
-        _ => Err("expected a finite number of zero or more".into()),
-    }
+    number(
+        text,
+        |x: f32| x >= 0.0 && x.is_finite(),
+        "a finite number of zero or more",
+    )
 }
 
 /// The end of a message about a name that is not there: the one of these that is most like it, if one is.
@@ -144,10 +154,11 @@ pub(super) fn meant<'a>(wanted: &str, names: impl Iterator<Item = &'a str>) -> S
 }
 
 pub(super) fn share(text: &str) -> Result<f32, String> {
-    match text.parse::<f32>() {
-        Ok(number) if (0.0..=1.0).contains(&number) => Ok(number),
-        _ => Err("expected a number from 0 to 1".into()),
-    }
+    number(
+        text,
+        |x: f32| (0.0..=1.0).contains(&x),
+        "a number from 0 to 1",
+    )
 }
 
 pub(super) fn ply_path(text: &str) -> Result<PathBuf, String> {

@@ -43,43 +43,37 @@ pub(super) fn lines(camera: &Camera, clips: &Clips, settings: &Settings) -> Stri
     lines + &notes.unwrap_or_default()
 }
 
-fn add_settings(flags: &mut Vec<String>, settings: &Settings) {
-    let Settings {
-        decay,
-        sigma,
-        miss,
-        trace_all,
-        background,
-        sh_degree,
-        raster,
-        show,
-        ..
-    } = *settings;
+fn add_settings(flags: &mut Vec<String>, own: &Settings) {
     let default = Settings::default();
-    if let Some(decay) = decay {
-        flags.push(format!("--decay {}", name(decay)));
-    }
-    if sigma != default.sigma {
-        flags.push(format!("--sigma {sigma}"));
-    }
-    if miss != default.miss {
-        flags.push(format!("--miss {}", name(miss)));
-    }
-    if trace_all {
-        flags.push("--trace-all".into());
-    }
-    if let Some([r, g, b]) = background {
-        flags.push(format!("--background {r},{g},{b}"));
-    }
-    if let Some(degree) = sh_degree {
-        flags.push(format!("--sh-degree {degree}"));
-    }
-    if raster != default.raster {
-        flags.push(format!("--raster {}", name(raster)));
-    }
-    if show != default.show {
-        flags.push(format!("--show {}", name(show)));
-    }
+    let values = [
+        ("decay", own.decay.map(name)),
+        ("sigma", changed(own.sigma, default.sigma).map(text)),
+        ("miss", changed(own.miss, default.miss).map(name)),
+        ("trace-all", own.trace_all.then(String::new)),
+        (
+            "background",
+            own.background.map(|[r, g, b]| format!("{r},{g},{b}")),
+        ),
+        ("sh-degree", own.sh_degree.map(text)),
+        ("raster", changed(own.raster, default.raster).map(name)),
+        ("show", changed(own.show, default.show).map(name)),
+    ];
+    flags.extend(typed(values));
+}
+
+fn changed<T: PartialEq>(value: T, default: T) -> Option<T> {
+    (value != default).then_some(value)
+}
+
+fn text(value: impl ToString) -> String {
+    value.to_string()
+}
+
+/// The flags that have a value, which is empty for those that take none.
+fn typed<const N: usize>(values: [(&str, Option<String>); N]) -> impl Iterator<Item = String> {
+    let flag = |(name, value): (&str, Option<String>)| Some(format!("--{name} {}", value?));
+    let flags = values.map(flag).into_iter().flatten();
+    flags.map(|flag| flag.trim_end().into())
 }
 
 /// Adds the preset that leaves the fewest single flags, and those flags.
@@ -99,37 +93,23 @@ fn add_precision(flags: &mut Vec<String>, precision: &Precision) {
     flags.extend(fewest.unwrap_or_default());
 }
 
-/// The single flags that make `preset` into `precision`.
-fn differences(precision: &Precision, preset: &Precision) -> Vec<String> {
-    let Precision {
-        target,
-        sh,
-        phi,
-        key_bits,
-        beam_switch,
-        transmittance_min,
-        ..
-    } = *precision;
-    let mut flags = Vec::new();
-    if target != preset.target {
-        flags.push(format!("--target-format {}", name(target)));
-    }
-    if sh != preset.sh {
-        flags.push(format!("--sh-format {}", name(sh)));
-    }
-    if phi != preset.phi {
-        flags.push(format!("--phi {}", name(phi)));
-    }
-    if key_bits != preset.key_bits {
-        flags.push(format!("--key-bits {key_bits}"));
-    }
-    if beam_switch != preset.beam_switch {
-        flags.push(format!("--beam-switch {beam_switch}"));
-    }
-    if transmittance_min != preset.transmittance_min {
-        flags.push(format!("--transmittance-min {transmittance_min}"));
-    }
-    flags
+/// The single flags that make `preset` into `own`.
+fn differences(own: &Precision, preset: &Precision) -> impl Iterator<Item = String> {
+    let (switch, least) = (preset.beam_switch, preset.transmittance_min);
+    typed([
+        (
+            "target-format",
+            changed(own.target, preset.target).map(name),
+        ),
+        ("sh-format", changed(own.sh, preset.sh).map(name)),
+        ("phi", changed(own.phi, preset.phi).map(name)),
+        ("key-bits", changed(own.key_bits, preset.key_bits).map(text)),
+        ("beam-switch", changed(own.beam_switch, switch).map(text)),
+        (
+            "transmittance-min",
+            changed(own.transmittance_min, least).map(text),
+        ),
+    ])
 }
 
 #[cfg(test)]

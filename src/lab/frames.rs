@@ -59,6 +59,21 @@ pub(crate) fn timed(
     })
 }
 
+/// A stage, frame by frame, or one of what frames have beside: `frame`, from the call to the picture, `processor`, of all cores,
+/// and `device`, all stages together. Nothing where no frame went through the stage.
+pub(crate) fn times(frames: &[FrameTime], name: &str) -> Vec<f64> {
+    let time = |timed: &FrameTime| match name {
+        "frame" => Some(timed.stats.wall_ms),
+        "processor" => Some(timed.processor_ms),
+        "device" => timed.stats.gpu_ms,
+        _ => {
+            let pass = timed.stats.passes.iter().find(|pass| pass.name == name)?;
+            Some(pass.ms)
+        }
+    };
+    frames.iter().filter_map(time).collect()
+}
+
 /// After this long the least number of rounds is enough.
 const ENOUGH: Duration = Duration::from_secs(30);
 

@@ -101,6 +101,34 @@ impl Table {
         self.rows.push(cells.into_iter().collect());
     }
 
+    /// Adds rows, each of cells for the columns so far and of numbers with names, which become columns.
+    pub(crate) fn pivot<'a>(
+        mut self,
+        rows: impl IntoIterator<Item = (Vec<Cell>, Vec<(&'a str, f64)>)>,
+    ) -> Self {
+        let keys = self.columns.len();
+        for (mut row, numbers) in rows {
+            for (name, number) in numbers {
+                let known = self.columns[keys..]
+                    .iter()
+                    .position(|column| column == name);
+                let at = keys
+                    + known.unwrap_or_else(|| {
+                        self.columns.push(name.into());
+                        self.columns.len() - 1 - keys
+                    });
+                row.resize(row.len().max(at + 1), Cell::Number(None));
+                row[at] = number.into();
+            }
+            self.rows.push(row);
+        }
+        let count = self.columns.len();
+        self.rows
+            .iter_mut()
+            .for_each(|row| row.resize(count, Cell::Number(None)));
+        self
+    }
+
     /// The number in a column of the row that begins with a text.
     pub fn number(&self, row: &str, column: &str) -> Option<f64> {
         let column = self.columns.iter().position(|name| name == column)?;

@@ -3,7 +3,7 @@
 use rara::{Camera, Clip, Headless, Result, Scene, Settings};
 use serde::Serialize;
 
-use crate::frames::{FrameTime, fresh, in_turn, timed};
+use crate::frames::{FrameTime, fresh, in_turn, timed, times};
 use crate::statistics::least;
 
 /// The times of one choice, milliseconds.
@@ -55,36 +55,32 @@ pub(crate) fn time(
         timed(headless, camera, clip, settings)
     })?;
     let on_cpu = headless.device().info().kind_name() == "cpu";
-    Ok(frames.iter().map(|frames| times(frames, on_cpu)).collect())
+    Ok(frames
+        .iter()
+        .map(|frames| summary(frames, on_cpu))
+        .collect())
 }
 
-fn times(frames: &[FrameTime], on_cpu: bool) -> Times {
-    let of =
-        |value: fn(&FrameTime) -> Option<f64>| frames.iter().filter_map(value).collect::<Vec<_>>();
-    let cpu = of(|frame| Some(frame.processor_ms));
-    let stages = frames
-        .first()
-        .into_iter()
-        .flat_map(|frame| &frame.stats.passes);
-    let pass = |name: &str| {
-        let all = frames.iter().flat_map(|frame| &frame.stats.passes);
-        let ms = all.filter(|pass| pass.name == name).map(|pass| pass.ms);
-        let ms: Vec<f64> = ms.collect();
+fn summary(frames: &[FrameTime], on_cpu: bool) -> Times {
+    let [device, wall, cpu] = ["device", "frame", "processor"].map(|name| times(frames, name));
+    let stages = frames.first().into_iter();
+    let stages = stages.flat_map(|frame| &frame.stats.passes).map(|pass| {
+        let ms = times(frames, pass.name);
         Pass {
-            name: name.to_owned(),
+            name: pass.name.to_owned(),
             ms: median(&ms),
             ms_min: least(&ms),
         }
-    };
-    let passes: Vec<Pass> = stages.map(|p| pass(p.name)).collect();
+    });
+    let passes: Vec<Pass> = stages.collect();
     let ms_min = passes.iter().fold(0.0, |sum, p| sum + p.ms_min);
     let cpu_ms_min = Some(least(&cpu)).filter(|&ms| on_cpu && ms > 0.0 && ms.is_finite());
     Times {
-        ms: median(&of(|frame| frame.stats.gpu_ms)),
+        ms: median(&device),
         ms_min,
         cpu_ms_min: cpu_ms_min.unwrap_or(0.0),
         cost: cpu_ms_min.unwrap_or(ms_min),
-        wall_ms: median(&of(|frame| Some(frame.stats.wall_ms))),
+        wall_ms: median(&wall),
         cpu_ms: median(&cpu),
         passes,
     }
@@ -112,16 +108,16 @@ mod tests {
             }
         };
         let uncounted = [(4.0, 3.0, 0.0), (1.0, 1.0, 0.0), (9.0, 2.0, 0.0)].map(frame);
-        let measured = times(&uncounted, true);
+        let measured = summary(&uncounted, true);
         assert_eq!((measured.ms, measured.wall_ms), (4.0, 5.0));
         assert_eq!((measured.ms_min, measured.cost), (1.0, 1.0));
         let pass = &measured.passes[0];
         assert_eq!((pass.ms, pass.ms_min), (2.0, 1.0));
         assert_eq!((measured.cpu_ms, measured.cpu_ms_min), (0.0, 0.0));
         let counted = [(4.0, 3.0, 9.0), (1.0, 1.0, 8.0)].map(frame);
-        let measured = times(&counted, true);
+        let measured = summary(&counted, true);
         assert_eq!((measured.cost, measured.cpu_ms), (8.0, 8.5));
-        let cost = times(&counted, false).cost;
+        let cost = summary(&counted, false).cost;
         assert_eq!(cost, 1.0, "a processor's time is not a GPU's");
     }
 }

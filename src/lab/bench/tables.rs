@@ -82,22 +82,12 @@ fn choices(report: &BenchReport) -> Table {
 }
 
 fn stages(report: &BenchReport) -> Table {
-    let mut names = Vec::new();
-    for pass in report.rows.iter().flat_map(|row| &row.times.passes) {
-        if !names.contains(&pass.name) {
-            names.push(pass.name.clone());
-        }
-    }
-    let columns = std::iter::once("choice".into()).chain(names.iter().cloned());
-    let mut table = Table::new("Stages", "The least of the frames, ms.", columns);
-    for row in &report.rows {
-        let of = |name: &String| row.times.passes.iter().find(|pass| pass.name == *name);
-        let times = names
-            .iter()
-            .map(|name| Cell::Number(of(name).map(|pass| pass.ms_min)));
-        table.row(std::iter::once(row.name.into()).chain(times));
-    }
-    table
+    let table = Table::new("Stages", "The least of the frames, ms.", ["choice"]);
+    table.pivot(report.rows.iter().map(|row| {
+        let passes = row.times.passes.iter();
+        let passes = passes.map(|pass| (pass.name.as_str(), pass.ms_min));
+        (vec![row.name.into()], passes.collect())
+    }))
 }
 
 fn ways(report: &BenchReport) -> Table {

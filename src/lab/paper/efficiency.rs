@@ -198,40 +198,15 @@ pub fn table(all: &[Efficiency]) -> Table {
 }
 
 pub fn stages(all: &[Efficiency]) -> Table {
-    let mut names: Vec<&str> = Vec::new();
-    for (name, _) in all
+    let columns = ["scene", "mode", "frames"];
+    let table = Table::new("Stages of these frames", "Milliseconds per frame.", columns);
+    let rows = all
         .iter()
-        .flat_map(|one| &one.rows)
-        .flat_map(|row| &row.passes)
-    {
-        if !names.contains(&name.as_str()) {
-            names.push(name);
-        }
-    }
-    let columns = ["scene", "mode", "frames"]
-        .into_iter()
-        .chain(names.iter().copied());
-    let mut table = Table::new("Stages of these frames", "Milliseconds per frame.", columns);
-    for one in all {
-        for row in &one.rows {
-            let frames = if row.reuse { "reuse" } else { "anew" };
-            let first = [
-                one.scene.as_str().into(),
-                row.mode.as_str().into(),
-                frames.into(),
-            ];
-            let of = |name: &&str| {
-                row.passes
-                    .iter()
-                    .find(|(n, _)| n == name)
-                    .map(|(_, ms)| *ms)
-            };
-            table.row(
-                first
-                    .into_iter()
-                    .chain(names.iter().map(|name| of(name).into())),
-            );
-        }
-    }
-    table
+        .flat_map(|one| one.rows.iter().map(move |row| (one, row)));
+    table.pivot(rows.map(|(one, row)| {
+        let frames = if row.reuse { "reuse" } else { "anew" };
+        let first = [one.scene.as_str(), row.mode.as_str(), frames];
+        let passes = row.passes.iter().map(|(name, ms)| (name.as_str(), *ms));
+        (first.map(Cell::from).into(), passes.collect())
+    }))
 }

@@ -8,11 +8,11 @@ use rara::types::Splat;
 use rara::{Clip, Headless, Result};
 
 use super::fragments;
-use super::numbers::{Measurements, times};
+use super::numbers::Measurements;
 use super::rates::Rates;
 use super::run::{Run, in_mode};
 use super::world::World;
-use crate::frames::{FrameTime, MODES, in_turn, timed};
+use crate::frames::{FrameTime, MODES, in_turn, timed, times};
 
 /// Bytes that are copied in a measurement, and in a run that only shows that everything runs.
 const MOVED: [u64; 2] = [128 << 20, 1 << 20];

@@ -1,6 +1,6 @@
 //! What was measured of one scene, as a table for people and as rows for programs.
 
-use crate::frames::FrameTime;
+use crate::frames::{FrameTime, times};
 use crate::statistics::{least, median};
 use crate::table::{Cell, Table, small};
 
@@ -45,20 +45,6 @@ struct Number {
 
 /// What frames have beside their stages: from the call to the picture, of all processors, and all stages together.
 const TOTALS: [&str; 3] = ["frame", "processor", "device"];
-
-/// One of [`TOTALS`] or a stage, frame by frame; nothing where no frame went through the stage.
-pub(super) fn times(frames: &[FrameTime], name: &str) -> Vec<f64> {
-    let time = |timed: &FrameTime| match name {
-        "frame" => Some(timed.stats.wall_ms),
-        "processor" => Some(timed.processor_ms),
-        "device" => timed.stats.gpu_ms,
-        _ => {
-            let pass = timed.stats.passes.iter().find(|pass| pass.name == name)?;
-            Some(pass.ms)
-        }
-    };
-    frames.iter().filter_map(time).collect()
-}
 
 impl Measurements {
     pub(super) fn new(section: &'static str, world: &World, size: [u32; 2]) -> Self {

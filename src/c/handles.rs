@@ -89,7 +89,10 @@ pub(crate) fn alive<T: Send + Sync + 'static>(handle: *const T, name: &str) -> R
 }
 
 /// What a handle stands for, to be changed by one thread that has it to itself meanwhile.
-pub(crate) fn alone<T: Send + Sync + 'static>(handle: *mut T, name: &str) -> Result<Alone<T>> {
+pub(crate) fn alone<T: Send + Sync + 'static>(
+    handle: *mut T,
+    name: &str,
+) -> Result<ExclusiveHandle<T>> {
     let mut handles = handles();
     find(handle, name, &mut handles)?;
     let place = handles.objects.get_mut(&handle.addr());
@@ -98,7 +101,7 @@ pub(crate) fn alone<T: Send + Sync + 'static>(handle: *mut T, name: &str) -> Res
     let mut object = object.unwrap_or_else(|_| unreachable!("its kind was checked"));
     if Arc::get_mut(&mut object).is_some() {
         let number = handle.addr();
-        return Ok(Alone {
+        return Ok(ExclusiveHandle {
             object: Some(object),
             number,
         });
@@ -123,13 +126,13 @@ pub(crate) fn number<T: Send + Sync + 'static, N: Default>(
 }
 
 /// An object that one thread has to itself, until this is dropped.
-pub(crate) struct Alone<T: Send + Sync + 'static> {
+pub(crate) struct ExclusiveHandle<T: Send + Sync + 'static> {
     /// `None` only while being dropped.
     object: Option<Arc<T>>,
     number: usize,
 }
 
-impl<T: Send + Sync> Deref for Alone<T> {
+impl<T: Send + Sync> Deref for ExclusiveHandle<T> {
     type Target = T;
 
     fn deref(&self) -> &T {
@@ -137,14 +140,14 @@ impl<T: Send + Sync> Deref for Alone<T> {
     }
 }
 
-impl<T: Send + Sync> DerefMut for Alone<T> {
+impl<T: Send + Sync> DerefMut for ExclusiveHandle<T> {
     fn deref_mut(&mut self) -> &mut T {
         let object = self.object.as_mut().expect("taken only by drop");
         Arc::get_mut(object).expect("nobody finds it meanwhile")
     }
 }
 
-impl<T: Send + Sync> Drop for Alone<T> {
+impl<T: Send + Sync> Drop for ExclusiveHandle<T> {
     fn drop(&mut self) {
         let object = self.object.take().map(|object| object as Object);
         // Its handle may have been destroyed meanwhile: then it goes now, when the lock is free again.

@@ -12,7 +12,7 @@ use crate::gaussians::RaraGaussians;
 use crate::handles::{alive, alone};
 use crate::layer_info::check_index;
 use crate::placement::RaraPlacement;
-use crate::scene::{GivenLayer, RaraSceneBuffers};
+use crate::scene::{HostLayer, RaraSceneBuffers};
 use crate::text::text;
 
 /// The state of a layer, which may change from frame to frame.
@@ -88,9 +88,9 @@ impl RaraLayer {
     }
 
     /// Reads the layer; `place` names it in messages.
-    unsafe fn layer(&self, place: &str) -> Result<GivenLayer> {
+    unsafe fn layer(&self, place: &str) -> Result<HostLayer> {
         let name = text(self.name, &format!("{place}.name"))?;
-        let mut layer = GivenLayer {
+        let mut layer = HostLayer {
             gaussians: alive(self.gaussians, &format!("{place}.gaussians"))?,
             name: name.to_owned(),
             state: LayerState::default(),
@@ -103,10 +103,7 @@ impl RaraLayer {
     }
 }
 
-pub(crate) unsafe fn given(
-    layers: *const RaraLayer,
-    layer_count: usize,
-) -> Result<Vec<GivenLayer>> {
+pub(crate) unsafe fn given(layers: *const RaraLayer, layer_count: usize) -> Result<Vec<HostLayer>> {
     if layer_count == 0 {
         return invalid("layer_count is 0, and a scene has at least one layer: give one or more");
     }

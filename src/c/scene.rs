@@ -51,7 +51,7 @@ pub(crate) fn sh_format(value: RaraShFormat) -> Result<ShFormat> {
 }
 
 /// A layer of a scene that is to be uploaded.
-pub(crate) struct GivenLayer {
+pub(crate) struct HostLayer {
     pub(crate) gaussians: Arc<RaraGaussians>,
     pub(crate) name: String,
     pub(crate) state: LayerState,
@@ -60,7 +60,7 @@ pub(crate) struct GivenLayer {
 }
 
 /// What the Gaussians of these layers are numbered by.
-pub(crate) fn numbers_of(given: &[GivenLayer]) -> Vec<Numbers<'_>> {
+pub(crate) fn numbers_of(given: &[HostLayer]) -> Vec<Numbers<'_>> {
     let layers = given.iter().map(|given| {
         let RaraGaussians {
             gaussians, part, ..
@@ -71,8 +71,8 @@ pub(crate) fn numbers_of(given: &[GivenLayer]) -> Vec<Numbers<'_>> {
 }
 
 /// The scene of these layers, whose numbers are those of [`numbers_of`].
-pub(crate) fn of_layers<'a>(given: &'a [GivenLayer], numbers: &'a [Numbers<'_>]) -> Scene<'a> {
-    let layer = |(given, numbers): (&'a GivenLayer, &'a Numbers<'_>)| {
+pub(crate) fn of_layers<'a>(given: &'a [HostLayer], numbers: &'a [Numbers<'_>]) -> Scene<'a> {
+    let layer = |(given, numbers): (&'a HostLayer, &'a Numbers<'_>)| {
         let mut layer =
             Layer::new(given.name.as_str(), &given.gaussians.gaussians).with(given.state);
         if let Some(clip) = &given.clip {

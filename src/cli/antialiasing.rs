@@ -3,18 +3,18 @@
 use std::path::Path;
 
 use super::failure::Failure;
-use super::scenes::Loaded;
+use super::scenes::SceneLayers;
 use super::training;
 
 /// What a text says of the layers of a name, or of all.
-struct Said<'a> {
+struct TrainingNote<'a> {
     /// The name of the layers; none for all.
     name: Option<&'a str>,
     /// What they are; none where that is found by the files.
     antialiased: Option<bool>,
 }
 
-impl<'a> Said<'a> {
+impl<'a> TrainingNote<'a> {
     fn parse(text: &'a str) -> Result<Self, Failure> {
         // A name may hold the sign that ends it.
         let (name, value) = match text.rsplit_once('=') {
@@ -47,17 +47,17 @@ pub(super) fn trained(file: &Path) -> Option<String> {
 
 /// Does what the flags say, and otherwise what the settings of the training say, with a note of it. Of several flags that say
 /// something of a layer the last one counts.
-pub(super) fn apply(texts: &[String], loaded: &mut Loaded) -> Result<(), Failure> {
+pub(super) fn apply(texts: &[String], loaded: &mut SceneLayers) -> Result<(), Failure> {
     let mut all = Vec::new();
     for text in texts {
-        let said = Said::parse(text)?;
+        let said = TrainingNote::parse(text)?;
         if let Some(name) = said.name {
             loaded.named("--antialiasing", name)?;
         }
         all.push(said);
     }
     for layer in &mut loaded.layers {
-        let is_of = |said: &&Said<'_>| said.name.is_none_or(|name| name == layer.name);
+        let is_of = |said: &&TrainingNote<'_>| said.name.is_none_or(|name| name == layer.name);
         let said = all.iter().rev().find(is_of);
         let trained = layer.trained.take();
         if let Some(antialiased) = said.and_then(|said| said.antialiased) {
@@ -75,7 +75,7 @@ pub(super) fn apply(texts: &[String], loaded: &mut Loaded) -> Result<(), Failure
 
 /// Refuses layers of both kinds where they become one set, which is antialiased as a whole or not at all. Hidden ones are left
 /// out of it.
-pub(super) fn check_alike(loaded: &Loaded) -> Result<(), Failure> {
+pub(super) fn check_alike(loaded: &SceneLayers) -> Result<(), Failure> {
     let shown = loaded.layers.iter();
     let shown = shown.filter(|layer| layer.state.visible && !layer.gaussians.is_empty());
     let of = |antialiased: bool| {

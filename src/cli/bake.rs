@@ -17,8 +17,8 @@ use super::failure::Failure;
 use super::output::{self, Progress, counted, grouped, say};
 use super::residual::{Residual, View, residual};
 use super::scene_file::LayerEntry;
-use super::scenes::{Loaded, SceneArgs};
-use super::select::{self, Taken};
+use super::scenes::{SceneArgs, SceneLayers};
+use super::select::{self, LayerRemains};
 use super::settings::{DeviceArgs, name};
 use super::values;
 
@@ -213,7 +213,12 @@ impl Bake {
     }
 
     /// Draws the exact cut, the cut by centres and the baked scene, and compares them.
-    fn compare(&self, loaded: &Loaded, baked: &[Baked], clip: &Clip) -> Result<Residual, Failure> {
+    fn compare(
+        &self,
+        loaded: &SceneLayers,
+        baked: &[Baked],
+        clip: &Clip,
+    ) -> Result<Residual, Failure> {
         let scene = loaded.scene();
         let cameras = views(&scene, self.up, self.views, self.size)?;
         let layers = scene.layers().iter().zip(baked);
@@ -310,12 +315,12 @@ fn print_counts(counts: &BakeCounts) {
 }
 
 /// The files with what they hold: all in one, or one each.
-fn outputs(loaded: &Loaded, paths: &[PathBuf], baked: Vec<Baked>) -> Vec<Output> {
+fn outputs(loaded: &SceneLayers, paths: &[PathBuf], baked: Vec<Baked>) -> Vec<Output> {
     let gaussians = match paths.len() == baked.len() {
         true => baked.into_iter().map(|baked| baked.gaussians).collect(),
         false => {
             let taken = loaded.layers.iter().zip(baked);
-            let taken = taken.map(|(layer, baked)| Taken {
+            let taken = taken.map(|(layer, baked)| LayerRemains {
                 numbers: layer.numbers.clone(),
                 count: layer.gaussians.len(),
                 gaussians: baked.gaussians,

@@ -9,7 +9,7 @@ use rara::Camera;
 use super::failure::Failure;
 use super::json_kind::JsonKind;
 use super::lens::{Depths, Lens, Ortho, UP, ortho};
-use super::views::{Framed, picked};
+use super::views::{Framing, picked};
 pub(super) use super::views::{View, Views};
 use super::{aspect, output, training, values};
 use rara::camera_files;
@@ -274,7 +274,7 @@ impl CameraArgs {
         }
         if self.cameras.is_none() && self.view.is_none() {
             let (up, note) = training::up_of(self.up, scenes);
-            let framed = Framed {
+            let framed = Framing {
                 up,
                 lens,
                 size,

@@ -12,7 +12,7 @@ use super::json_kind::JsonKind;
 use super::output;
 use super::region::Region;
 use super::scene_file::LayerClip;
-use super::scenes::{Loaded, LoadedLayer};
+use super::scenes::{LoadedLayer, SceneLayers};
 use super::values;
 
 /// The clip: the parts to cut away.
@@ -85,7 +85,7 @@ impl Regions {
     }
 
     /// Gives layers the clips that files have for them, unless a flag says otherwise, and saves all clips where that is wanted.
-    pub(super) fn settle(&self, loaded: &mut Loaded) -> Result<(), Failure> {
+    pub(super) fn settle(&self, loaded: &mut SceneLayers) -> Result<(), Failure> {
         for (name, clip) in &self.layers {
             for layer in loaded.named("--clip-file", name)? {
                 if layer.clip == layer.listed.clip {
@@ -101,7 +101,7 @@ impl Regions {
     }
 
     /// Writes the clip to a file as one expression, and the layers' own clips, where that is wanted.
-    fn save(&self, loaded: &Loaded) -> rara::Result<()> {
+    fn save(&self, loaded: &SceneLayers) -> rara::Result<()> {
         let Some(path) = &self.save else {
             return Ok(());
         };

@@ -7,7 +7,7 @@ use super::times;
 
 /// Frames of one picture that were measured.
 #[derive(Debug, Clone, Serialize)]
-pub(super) struct Measured {
+pub(super) struct FrameSummary {
     #[serde(flatten)]
     pub(super) stats: FrameStats,
     pub(super) samples: usize,
@@ -37,7 +37,7 @@ impl Times {
     }
 }
 
-impl Measured {
+impl FrameSummary {
     pub(super) fn of(frames: &[FrameStats]) -> Self {
         let times = || {
             frames.iter().map(|frame| Times {
@@ -207,8 +207,11 @@ mod tests {
         assert_eq!((median.gpu_ms, median.counts.visible), (Some(2.0), 20));
         assert_eq!(sorting(&median), Some(3.0));
         assert!(median.skipped.is_empty());
-        let parts = [Measured::of(&frames[..1]), Measured::of(&frames[1..])];
-        let all = Measured::all(parts.iter());
+        let parts = [
+            FrameSummary::of(&frames[..1]),
+            FrameSummary::of(&frames[1..]),
+        ];
+        let all = FrameSummary::all(parts.iter());
         assert_eq!((all.samples, all.stats.gpu_ms), (3, Some(5.25)));
         assert_eq!(
             (all.least.gpu_ms, all.greatest.gpu_ms),
@@ -222,7 +225,7 @@ mod tests {
             combine(&[FrameStats::default()], Combine::Mean).gpu_ms,
             None
         );
-        let together = Measured::together(parts.iter());
+        let together = FrameSummary::together(parts.iter());
         assert_eq!((together.samples, together.stats.gpu_ms), (3, Some(10.5)));
         assert_eq!(sorting(&together.stats), Some(6.0));
         assert_eq!(

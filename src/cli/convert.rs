@@ -13,7 +13,7 @@ use super::clip::ClipArgs;
 use super::failure::Failure;
 use super::output::{self, counted, say};
 use super::scenes::{LoadedLayer, SceneArgs};
-use super::select::{self, Numbers, Taken};
+use super::select::{self, LayerRemains, Numbers};
 use super::values;
 
 /// Write a scene in another format
@@ -120,7 +120,7 @@ impl Convert {
                 document.hidden += count;
                 (layer.numbers, Part::default())
             };
-            taken.push(Taken {
+            taken.push(LayerRemains {
                 numbers,
                 count,
                 gaussians: part.gaussians,

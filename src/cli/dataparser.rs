@@ -25,7 +25,7 @@ struct Transforms {
 
 /// What has been done to the cameras of a `transforms.json` already, and is part of the other file too.
 #[derive(Deserialize)]
-struct Applied {
+struct DataparserTransform {
     applied_transform: Option<Rows>,
     applied_scale: Option<f64>,
 }
@@ -40,7 +40,7 @@ struct Move {
 
 /// The cameras of the file `of`, a `transforms.json`, where the file `by` puts them.
 pub(super) fn place(cameras: &mut [NamedCamera], of: &Path, by: &Path) -> Result<()> {
-    let (transforms, applied) = (read::<Transforms>(by)?, read::<Applied>(of)?);
+    let (transforms, applied) = (read::<Transforms>(by)?, read::<DataparserTransform>(of)?);
     let way = Move::new(&transforms, &applied).ok_or_else(|| {
         Error::format(by, "its transform and scale, or the applied ones of transforms.json, turn, move and scale nothing; \
              train again, or take this file away")
@@ -53,7 +53,7 @@ pub(super) fn place(cameras: &mut [NamedCamera], of: &Path, by: &Path) -> Result
 
 impl Move {
     /// `None` where the matrices are not rigid or the scale is none.
-    fn new(transforms: &Transforms, applied: &Applied) -> Option<Self> {
+    fn new(transforms: &Transforms, applied: &DataparserTransform) -> Option<Self> {
         const NOTHING: Rows = [
             [1.0, 0.0, 0.0, 0.0],
             [0.0, 1.0, 0.0, 0.0],
@@ -117,7 +117,7 @@ mod tests {
             transform: rows,
             scale: 0.5,
         };
-        let applied = |applied_transform| Applied {
+        let applied = |applied_transform| DataparserTransform {
             applied_transform,
             applied_scale: None,
         };

@@ -16,7 +16,7 @@ use super::frame::ComparisonArgs;
 use super::framing;
 use super::memory;
 use super::output::{self, counted, grouped, say};
-use super::scenes::{self, Loaded};
+use super::scenes::{self, SceneLayers};
 use super::session::Session;
 use super::settings::name;
 use super::{sheet, times};
@@ -132,9 +132,9 @@ fn in_turns(
 }
 
 /// The scene that is drawn if no file is given.
-fn made_up() -> Loaded {
+fn made_up() -> SceneLayers {
     let gaussians = scene::generate(scene::Kind::General, 60_000, 1);
-    Loaded::made_up("demo", gaussians)
+    SceneLayers::made_up("demo", gaussians)
 }
 
 /// A plane that shows the camera the cut: it takes away what is near and to the left, which is half of the Gaussians.

@@ -7,14 +7,14 @@ use rara::{HeadlessDesc, Result, Scene, ShFormat};
 use super::failure::Failure;
 use super::profile::Profile;
 use super::scene_file::LayerClip;
-use super::scenes::{Loaded, SceneArgs};
+use super::scenes::{SceneArgs, SceneLayers};
 use super::session::Session;
 
 /// What the last command has left; nothing where a command runs by itself.
 #[derive(Default)]
-pub(super) struct Kept {
+pub(super) struct SessionCache {
     is_wanted: bool,
-    last: Option<(Place, Loaded)>,
+    last: Option<(Place, SceneLayers)>,
 }
 
 /// Where a scene is drawn.
@@ -26,7 +26,7 @@ pub(super) struct Place {
     session: Option<Session>,
 }
 
-impl Kept {
+impl SessionCache {
     /// For several commands.
     pub(super) fn wanted() -> Self {
         Self {
@@ -42,7 +42,7 @@ impl Kept {
         profile: &Profile,
         scenes: &SceneArgs,
         device: &impl Debug,
-    ) -> std::result::Result<(Place, Loaded), Failure> {
+    ) -> std::result::Result<(Place, SceneLayers), Failure> {
         let flags = format!("{scenes:?} {device:?}");
         if let Some((place, mut loaded)) = self.last.take() {
             if place.flags == flags {
@@ -67,7 +67,12 @@ impl Kept {
     }
 
     /// Keeps the scene for the next command, or closes its session.
-    pub(super) fn keep(&mut self, place: Place, loaded: Loaded, session: Session) -> Result<()> {
+    pub(super) fn keep(
+        &mut self,
+        place: Place,
+        loaded: SceneLayers,
+        session: Session,
+    ) -> Result<()> {
         let place = Place {
             session: Some(session),
             ..place

@@ -5,10 +5,10 @@ use rara::Bounds;
 use super::failure::Failure;
 use super::region::Region;
 use super::scene_file::LayerClip;
-use super::scenes::Loaded;
+use super::scenes::SceneLayers;
 
 /// Does what the flags say, in their order.
-pub(super) fn apply(texts: &[String], loaded: &mut Loaded) -> Result<(), Failure> {
+pub(super) fn apply(texts: &[String], loaded: &mut SceneLayers) -> Result<(), Failure> {
     for text in texts {
         let Some(at) = loaded.end_of_name(text) else {
             return Err(Failure::Usage(format!(

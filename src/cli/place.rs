@@ -4,11 +4,11 @@ use glam::{DQuat, DVec3};
 use rara::Placement;
 
 use super::failure::Failure;
-use super::scenes::Loaded;
+use super::scenes::SceneLayers;
 use super::values;
 
 /// Does what the flags say, each in place of what was said of its layers before.
-pub(super) fn apply(texts: &[String], loaded: &mut Loaded) -> Result<(), Failure> {
+pub(super) fn apply(texts: &[String], loaded: &mut SceneLayers) -> Result<(), Failure> {
     for text in texts {
         let Some(at) = loaded.end_of_name(text) else {
             let placement = of_flag(text, text)?;

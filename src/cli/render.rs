@@ -11,12 +11,14 @@ use super::clip::Regions;
 use super::failure::Failure;
 use super::frame::FrameArgs;
 use super::framing;
-use super::kept::Kept;
+use super::kept::SessionCache;
 use super::memory;
 use super::output;
 use super::panorama::{self, Panorama, PanoramaArgs};
 use super::path::PathArgs;
-use super::pictures::{self, Destination, Drawn, Order, PictureArgs, Pixels, Plan, Planned};
+use super::pictures::{
+    self, Destination, Order, PictureArgs, PictureJob, Pixels, Plan, RenderedPicture,
+};
 use super::profile::{Profile, ProfileArgs};
 use super::report::{Answer, Frame, Report};
 use super::save_camera::SaveCameraArgs;
@@ -149,7 +151,7 @@ impl Pictures {
 }
 
 /// What the flags mean, before the scene is known.
-struct Meant {
+struct RenderPlan {
     settings: Settings,
     panorama: Option<Panorama>,
     pictures: Pictures,
@@ -159,7 +161,7 @@ struct Meant {
 
 impl Render {
     pub(super) fn run(self) -> Result<(), Failure> {
-        self.run_in(&mut Kept::default(), None)
+        self.run_in(&mut SessionCache::default(), None)
     }
 
     /// What a run of many commands has to know before it draws any picture.
@@ -179,7 +181,7 @@ impl Render {
         Ok(destination.plan((&self.scenes, self.frame.device.meant()), &numbers, size))
     }
 
-    fn meant(&mut self) -> Result<Meant, Failure> {
+    fn meant(&mut self) -> Result<RenderPlan, Failure> {
         let settings = self.frame.settings.meant()?;
         self.slice.check(&settings)?;
         let sections = self.section.meant(&self.frame.camera, &self.frame.clip)?;
@@ -208,7 +210,7 @@ impl Render {
         if settings.show == Show::Count {
             pictures::needs_floats(self.output.as_deref(), pictures::COUNTS)?;
         }
-        Ok(Meant {
+        Ok(RenderPlan {
             settings,
             panorama,
             pictures,
@@ -219,10 +221,10 @@ impl Render {
     /// Draws the pictures that are in `order`, or all of them and reports them.
     pub(super) fn run_in(
         mut self,
-        kept: &mut Kept,
+        kept: &mut SessionCache,
         order: Option<&dyn Order>,
     ) -> Result<(), Failure> {
-        let Meant {
+        let RenderPlan {
             settings,
             panorama,
             pictures,
@@ -258,7 +260,7 @@ impl Render {
 
     fn draw(
         &self,
-        (profile, kept): (&Profile, &mut Kept),
+        (profile, kept): (&Profile, &mut SessionCache),
         (pictures, several): (Pictures, bool),
         (panorama, destination): (Option<Panorama>, &Destination<'_>),
         settings: &Settings,
@@ -288,7 +290,7 @@ impl Render {
         if let Some(order) = destination.order() {
             order.opened(session.driver());
         }
-        let is_clipped = |one: &Planned<Shot>| !one.what.clip.is_everything();
+        let is_clipped = |one: &PictureJob<Shot>| !one.what.clip.is_everything();
         let clips = loaded.has_clips() || planned.iter().any(is_clipped);
         let faces = panorama.map_or(1, |_| Panorama::FACES);
         let repeat = match destination.order() {
@@ -300,7 +302,7 @@ impl Render {
             if let Some(panorama) = &panorama {
                 return self.surroundings(profile, &mut session, (panorama, one), settings, repeat);
             }
-            let Planned {
+            let PictureJob {
                 what: shot, file, ..
             } = one;
             let Shot {
@@ -320,7 +322,8 @@ impl Render {
                 None => session.measured_frame(&view.camera, clip, settings, repeat)?,
             };
             let plane = shot.cut().map(|cut| &cut.plane);
-            let mut drawn = Drawn::from(Frame::new(view, file.as_deref(), plane, measured));
+            let mut drawn =
+                RenderedPicture::from(Frame::new(view, file.as_deref(), plane, measured));
             if file.is_some() {
                 drawn.picture = Some(match shot.cut().filter(|_| slicer.has_cues()) {
                     None => Pixels::Stored(session.last_stored()?),
@@ -358,11 +361,11 @@ impl Render {
         &self,
         profile: &Profile,
         session: &mut Session,
-        (panorama, one): (&Panorama, &Planned<Shot>),
+        (panorama, one): (&Panorama, &PictureJob<Shot>),
         settings: &Settings,
         repeat: Repeat,
-    ) -> Result<Drawn, Failure> {
-        let Planned {
+    ) -> Result<RenderedPicture, Failure> {
+        let PictureJob {
             what: shot, file, ..
         } = one;
         let (mut frames, mut pictures) = (Vec::new(), Vec::new());
@@ -374,10 +377,10 @@ impl Render {
             }
         }
         let picture = || profile.span("panorama", || panorama.assembled(&pictures));
-        Ok(Drawn {
+        Ok(RenderedPicture {
             picture: file.as_ref().map(|_| Pixels::Decoded(picture())),
             faces: frames.clone(),
-            ..Drawn::from(Frame::together(&shot.view, file.as_deref(), &frames))
+            ..RenderedPicture::from(Frame::together(&shot.view, file.as_deref(), &frames))
         })
     }
 

@@ -9,9 +9,9 @@ use rara::{Counts, FrameStats, Plane};
 use serde::Serialize;
 
 use super::camera::View;
-use super::combine::{Combine, Measured, combine};
+use super::combine::{Combine, FrameSummary, combine};
 use super::output::{self, counted, grouped, say};
-use super::scenes::Loaded;
+use super::scenes::SceneLayers;
 use super::session::Session;
 use super::times;
 
@@ -38,7 +38,7 @@ pub(super) struct Report {
     #[serde(skip_serializing_if = "Option::is_none")]
     camera: Option<SavedCamera>,
     #[serde(flatten)]
-    measured: Measured,
+    measured: FrameSummary,
     /// What the driver's compilation has added to frames that are not among those measured.
     first_use_ms: f64,
     /// Whether an earlier run has kept it.
@@ -66,7 +66,7 @@ pub(super) struct Frame {
     #[serde(skip)]
     faces: usize,
     #[serde(flatten)]
-    pub(super) measured: Measured,
+    pub(super) measured: FrameSummary,
 }
 
 impl Frame {
@@ -74,7 +74,7 @@ impl Frame {
         view: &View,
         file: Option<&Path>,
         plane: Option<&Plane>,
-        measured: Measured,
+        measured: FrameSummary,
     ) -> Self {
         let plane = plane.map(|plane| {
             let normal = plane.normal();
@@ -93,7 +93,7 @@ impl Frame {
 
     /// One of a picture that is made of several, which took as long as these together.
     pub(super) fn together(view: &View, file: Option<&Path>, faces: &[Self]) -> Self {
-        let measured = Measured::together(faces.iter().map(|face| &face.measured));
+        let measured = FrameSummary::together(faces.iter().map(|face| &face.measured));
         Self {
             faces: faces.len(),
             ..Self::new(view, file, None, measured)
@@ -191,7 +191,7 @@ impl Report {
     /// A report whose top level holds the medians of what each picture took.
     pub(super) fn new(
         session: &Session,
-        loaded: &Loaded,
+        loaded: &SceneLayers,
         size: (u32, u32),
         mode: String,
         pictures: &[Frame],
@@ -200,7 +200,7 @@ impl Report {
         let (shape, reason) = session.shape();
         let scene_bytes = session.scene_bytes();
         let scene = loaded.scene();
-        let measured = Measured::all(pictures.iter().map(|picture| &picture.measured));
+        let measured = FrameSummary::all(pictures.iter().map(|picture| &picture.measured));
         let faces = pictures.first().map_or(1, |picture| picture.faces);
         let a_frame = measured.stats.wall_ms / faces as f64;
         Self {

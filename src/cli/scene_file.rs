@@ -12,7 +12,7 @@ use rara::{Bounds, Clip, Error, Gaussians, Layer, LayerState, Placement, Result,
 use serde::Deserialize;
 
 use super::region::Region;
-use super::select::Selected;
+use super::select::Selection;
 
 /// The longest list that is read.
 pub(super) const MOST_BYTES: u64 = 16 << 20;
@@ -28,11 +28,11 @@ pub(super) struct LayerEntry {
     pub(super) antialiased: Option<bool>,
     pub(super) clip: Option<LayerClip<Region>>,
     /// The layers that take their splats from it, in the order in which they do so.
-    pub(super) selected: Vec<Selected>,
+    pub(super) selected: Vec<Selection>,
 }
 
 /// What of the entry's layers is known once all files are read.
-pub(super) struct Settled {
+pub(super) struct SceneDescription {
     pub(super) clips: Vec<Option<LayerClip>>,
     /// What its selections take.
     pub(super) predicates: Vec<Predicate>,
@@ -135,12 +135,12 @@ impl LayerEntry {
     }
 
     /// What clips and selections mean in a scene, whose bounds are asked for if one of them lies at shares of them.
-    fn settled(&self, bounds: impl Fn() -> Bounds) -> Result<Settled> {
+    fn settled(&self, bounds: impl Fn() -> Bounds) -> Result<SceneDescription> {
         let clips = self
             .clips()
             .map(|clip| clip.map(|clip| clip.within(&bounds)).transpose());
         let predicates = self.selected.iter().map(|one| one.predicate.of(&bounds));
-        Ok(Settled {
+        Ok(SceneDescription {
             clips: clips.collect::<Result<_>>()?,
             predicates: predicates.collect::<Result<_>>()?,
         })
@@ -156,7 +156,7 @@ impl LayerEntry {
 /// What is known of entries once their files are read. What lies at shares lies at those of the scene that they list.
 pub(super) fn settled<'a>(
     files: impl Iterator<Item = (&'a LayerEntry, &'a Gaussians)> + Clone,
-) -> Result<Vec<Settled>> {
+) -> Result<Vec<SceneDescription>> {
     let bounds = LazyCell::new(|| {
         let layers = files.clone();
         let layers = layers.map(|(entry, of)| Layer::new(&entry.name, of).with(entry.state));
@@ -204,13 +204,13 @@ struct Entry {
     /// An expression as text; `whole` keeps everything.
     clip_expr: Option<String>,
     #[serde(default)]
-    select: Vec<Selection>,
+    select: Vec<SelectionRecord>,
 }
 
 /// A layer that is selected from another; what it does not say is as of that.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Selection {
+struct SelectionRecord {
     name: String,
     r#where: String,
     opacity: Option<f32>,
@@ -231,10 +231,10 @@ fn own_clip(tree: Option<Expression>, text: Option<String>) -> Result<Option<Lay
     }
 }
 
-impl Selection {
+impl SelectionRecord {
     /// The layer that it makes of one.
-    fn of(self, layer: &LayerEntry) -> Result<Selected> {
-        let mut selected = Selected::new(self.name, self.r#where.parse()?, layer);
+    fn of(self, layer: &LayerEntry) -> Result<Selection> {
+        let mut selected = Selection::new(self.name, self.r#where.parse()?, layer);
         let state = selected.state;
         selected.state = state
             .opacity(self.opacity.unwrap_or(state.opacity))

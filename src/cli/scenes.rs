@@ -10,7 +10,7 @@ use super::failure::Failure;
 use super::json_kind::JsonKind;
 use super::output::say;
 use super::reading::{self, Watch};
-use super::scene_file::{self, LayerClip, LayerEntry, Settled};
+use super::scene_file::{self, LayerClip, LayerEntry, SceneDescription};
 use super::{antialiasing, layer_clip, place, select, training, values};
 use rara::scene::{Format, Property};
 
@@ -113,12 +113,12 @@ impl SceneArgs {
         !self.layer_clip.is_empty() || entries.iter().any(LayerEntry::has_clip)
     }
 
-    pub(super) fn load(&self) -> Result<Loaded, Failure> {
+    pub(super) fn load(&self) -> Result<SceneLayers, Failure> {
         self.load_watched(&mut |_| ())
     }
 
     /// Reads the files, and tells how far it has come.
-    pub(super) fn load_watched(&self, watch: Watch<'_>) -> Result<Loaded, Failure> {
+    pub(super) fn load_watched(&self, watch: Watch<'_>) -> Result<SceneLayers, Failure> {
         let mut loaded = load(self.entries()?, &self.antialiasing, watch)?;
         place::apply(&self.place, &mut loaded)?;
         for name in &self.hide {
@@ -151,13 +151,13 @@ pub(super) struct LoadedLayer {
     pub(super) trained: Option<String>,
     /// What is said of it before any flag says otherwise.
     #[cfg_attr(not(feature = "view"), allow(dead_code))]
-    pub(super) listed: Listed,
+    pub(super) listed: ListedState,
 }
 
 /// What the list of a scene's layers says of one, in so far as flags may say otherwise.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(not(feature = "view"), allow(dead_code))]
-pub(super) struct Listed {
+pub(super) struct ListedState {
     pub(super) visible: bool,
     pub(super) clip: Option<LayerClip>,
 }
@@ -170,7 +170,7 @@ impl LoadedLayer {
             gaussians: Gaussians::default(),
             format: None,
             state,
-            listed: Listed {
+            listed: ListedState {
                 visible: state.visible,
                 clip: clip.clone(),
             },
@@ -181,7 +181,7 @@ impl LoadedLayer {
     }
 }
 
-pub(super) struct Loaded {
+pub(super) struct SceneLayers {
     pub(super) layers: Vec<LoadedLayer>,
     /// Gaussians that had a field put right.
     pub(super) repaired: u64,
@@ -191,7 +191,7 @@ pub(super) struct Loaded {
     pub(super) notes: Vec<String>,
 }
 
-impl Loaded {
+impl SceneLayers {
     /// Gaussians that come from no file.
     pub(super) fn made_up(name: &str, gaussians: Gaussians) -> Self {
         Self {
@@ -233,7 +233,7 @@ impl Loaded {
     /// Adds the layers that an entry makes of its file's Gaussians, of which `first` are in the files before.
     fn add(
         &mut self,
-        (entry, settled): (LayerEntry, Settled),
+        (entry, settled): (LayerEntry, SceneDescription),
         gaussians: Gaussians,
         properties: &[Property],
         first: u32,
@@ -309,7 +309,7 @@ impl Loaded {
 }
 
 /// Reads the layers that these files are or list, and tells how far it has come.
-pub(super) fn load_files(paths: &[PathBuf], watch: Watch<'_>) -> Result<Loaded, Failure> {
+pub(super) fn load_files(paths: &[PathBuf], watch: Watch<'_>) -> Result<SceneLayers, Failure> {
     load(entries(paths)?, &[], watch)
 }
 
@@ -322,8 +322,12 @@ fn entries(files: &[PathBuf]) -> Result<Vec<LayerEntry>, Failure> {
 }
 
 /// Reads the files in order, and prints what had to be repaired. `flags` are those of `--antialiasing`.
-fn load(entries: Vec<LayerEntry>, flags: &[String], watch: Watch<'_>) -> Result<Loaded, Failure> {
-    let mut all = Loaded {
+fn load(
+    entries: Vec<LayerEntry>,
+    flags: &[String],
+    watch: Watch<'_>,
+) -> Result<SceneLayers, Failure> {
+    let mut all = SceneLayers {
         layers: Vec::new(),
         repaired: 0,
         dropped: 0,

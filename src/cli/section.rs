@@ -24,7 +24,7 @@ pub(super) struct SectionArgs {
     /// sections. Axes are z or axial, y or coronal, x or sagittal; a leading ! looks from the other side. NAME is a
     /// plane of a --clip-file, which then clips nothing else. The picture has no perspective.
     #[arg(long, value_name = "AXIS=SHARE|NAME", value_parser = wanted, allow_hyphen_values = true)]
-    section: Vec<Wanted>,
+    section: Vec<SectionRequest>,
     /// Keep a slab of this thickness, world units [default: all behind]
     #[arg(long, value_name = "T", value_parser = values::positive, allow_hyphen_values = true)]
     section_thickness: Option<f32>,
@@ -36,7 +36,7 @@ pub(super) struct SectionArgs {
 }
 
 #[derive(Debug, Clone, PartialEq)]
-enum Wanted {
+enum SectionRequest {
     Across { axis: Axis, shares: Shares },
     Named(String),
 }
@@ -96,27 +96,27 @@ impl Shares {
     }
 }
 
-fn wanted(text: &str) -> Result<Wanted, String> {
+fn wanted(text: &str) -> Result<SectionRequest, String> {
     let Some((name, shares)) = text.split_once('=') else {
         return match text {
             "" => Err("expected an axis and a share, as axial=0.5, or the name of a plane".into()),
             name if Axis::of(name).is_some() => Err(format!(
                 "{name} needs a share of the scene, as in {name}=0.5"
             )),
-            name => Ok(Wanted::Named(name.into())),
+            name => Ok(SectionRequest::Named(name.into())),
         };
     };
     let axis = Axis::of(name).ok_or_else(|| {
         format!("'{name}' is no axis; there are axial (z), coronal (y) and sagittal (x), each with a leading ! or without")
     })?;
     let shares = Shares::parse(shares)?;
-    Ok(Wanted::Across { axis, shares })
+    Ok(SectionRequest::Across { axis, shares })
 }
 
 /// Sections whose flags have been checked, before the scene is known.
 #[derive(Debug)]
 pub(super) struct Sections {
-    planned: Vec<Planned>,
+    planned: Vec<SectionPlan>,
     /// What else clips.
     shapes: Regions,
     thickness: Option<f64>,
@@ -126,7 +126,7 @@ pub(super) struct Sections {
 }
 
 #[derive(Debug)]
-enum Planned {
+enum SectionPlan {
     /// Across an axis, at a share of the bounds along it.
     Across(Axis, f64),
     /// A plane by its name.
@@ -167,7 +167,10 @@ impl SectionArgs {
                     .into(),
             ));
         }
-        let is_named = self.section.iter().any(|s| matches!(s, Wanted::Named(_)));
+        let is_named = self
+            .section
+            .iter()
+            .any(|s| matches!(s, SectionRequest::Named(_)));
         let (shapes, planes) = if is_named {
             (clip.beside_planes()?, clip.planes()?)
         } else {
@@ -181,17 +184,18 @@ impl SectionArgs {
         let mut planned = Vec::new();
         for wanted in &self.section {
             match wanted {
-                Wanted::Across { axis, shares } => {
+                SectionRequest::Across { axis, shares } => {
                     planned.extend(
                         shares
                             .all()
-                            .map(|share| Planned::Across(axis.clone(), share)),
+                            .map(|share| SectionPlan::Across(axis.clone(), share)),
                     );
                 }
-                Wanted::Named(name) => {
+                SectionRequest::Named(name) => {
                     let before = planned.len();
                     let found = planes.iter().filter(|(of, _)| of == name);
-                    planned.extend(found.map(|(_, plane)| Planned::Plane(name.clone(), *plane)));
+                    planned
+                        .extend(found.map(|(_, plane)| SectionPlan::Plane(name.clone(), *plane)));
                     if planned.len() == before {
                         return Err(unknown(name, planes.iter().map(|(name, _)| name.as_str())));
                     }
@@ -241,15 +245,15 @@ impl Sections {
         let others = self.shapes.of(scene)?;
         let rest = joined(&others, ClipOp::And);
         let visible = Visible::nearly_all_of(scene);
-        let section = |(number, planned): (usize, &Planned)| {
+        let section = |(number, planned): (usize, &SectionPlan)| {
             let (name, plane, up) = match planned {
-                Planned::Across(axis, share) => {
+                SectionPlan::Across(axis, share) => {
                     let at = bounds.min.lerp(bounds.max, *share).dot(axis.along);
                     let offset = -axis.forward.dot(axis.along) * at;
                     let name = format!("{}={share}", axis.name);
                     (name, Plane::new(axis.forward, offset)?, axis.up)
                 }
-                Planned::Plane(name, plane) => (name.clone(), *plane, up_across(plane)),
+                SectionPlan::Plane(name, plane) => (name.clone(), *plane, up_across(plane)),
             };
             let up = self.up.map_or(up, |up| upright(plane.normal(), up));
             let mut camera = visible.facing(&plane, up, self.size)?;
@@ -318,6 +322,6 @@ mod tests {
             let error = wanted(text).expect_err(text);
             assert!(error.contains(says), "{text}: {error}");
         }
-        assert_eq!(wanted("skin"), Ok(Wanted::Named("skin".into())));
+        assert_eq!(wanted("skin"), Ok(SectionRequest::Named("skin".into())));
     }
 }

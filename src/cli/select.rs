@@ -10,7 +10,7 @@ use super::values;
 
 /// A layer that a selection makes of what a predicate takes of another.
 #[derive(Debug, Clone)]
-pub(super) struct Selected {
+pub(super) struct Selection {
     /// What it takes from: 0 for the file's own layer, or one more than the number of an earlier selection of the file.
     from: usize,
     pub(super) predicate: Region<Predicate>,
@@ -19,7 +19,7 @@ pub(super) struct Selected {
     pub(super) clip: Option<LayerClip<Region>>,
 }
 
-impl Selected {
+impl Selection {
     /// A selection from what a file's own layer is left with, whose state and clip it takes.
     pub(super) fn new(name: String, predicate: Region<Predicate>, entry: &LayerEntry) -> Self {
         Self {
@@ -64,11 +64,11 @@ pub(super) fn add(entries: &mut [LayerEntry], text: &str) -> Result<(), Failure>
         };
         for from in sources {
             found = true;
-            let mut selected = Selected::new(name.into(), predicate.clone(), entry);
+            let mut selected = Selection::new(name.into(), predicate.clone(), entry);
             if let Some(source) = from.checked_sub(1).map(|at| &entry.selected[at]) {
                 (selected.state, selected.clip) = (source.state, source.clip.clone());
             }
-            entry.selected.push(Selected { from, ..selected });
+            entry.selected.push(Selection { from, ..selected });
         }
     }
     if found {
@@ -94,7 +94,7 @@ pub(super) fn no_layer<'a>(
 }
 
 /// The names of the properties that selections compare, each once.
-pub(super) fn properties(selected: &[Selected]) -> Vec<&str> {
+pub(super) fn properties(selected: &[Selection]) -> Vec<&str> {
     let mut names: Vec<_> = selected
         .iter()
         .flat_map(|one| one.predicate.example().properties())
@@ -126,7 +126,7 @@ pub(super) fn divide(
 pub(super) type Numbers = (u32, Vec<u32>);
 
 /// What has become of a layer's Gaussians.
-pub(super) struct Taken {
+pub(super) struct LayerRemains {
     /// Of the layer before: where it is a part of a file, its place in the files, and how many Gaussians it had.
     pub(super) numbers: Option<Numbers>,
     pub(super) count: usize,
@@ -137,7 +137,7 @@ pub(super) struct Taken {
 
 /// What has become of layers as one set. Where selections have divided files, it is in the files' order, as if they had not:
 /// Gaussians that are equally deep are drawn in that order.
-pub(super) fn joined(layers: Vec<Taken>) -> Gaussians {
+pub(super) fn joined(layers: Vec<LayerRemains>) -> Gaussians {
     let mut joined = Gaussians::default();
     if layers.iter().all(|layer| layer.numbers.is_none()) {
         for layer in layers {

@@ -13,7 +13,7 @@ use rara::{
 
 use rara_lab::frames::fresh;
 
-use super::combine::Measured;
+use super::combine::FrameSummary;
 use super::output::Compiling;
 use super::process;
 
@@ -91,11 +91,13 @@ impl Session {
         clip: &Clip,
         settings: &Settings,
         repeat: Repeat,
-    ) -> Result<Measured> {
+    ) -> Result<FrameSummary> {
         let most = match repeat {
             Repeat::Unmeasured => return self.frame(camera, clip, settings, 1),
             Repeat::Following => {
-                return Ok(Measured::of(&[self.next_frame(camera, clip, settings)?]));
+                return Ok(FrameSummary::of(
+                    &[self.next_frame(camera, clip, settings)?],
+                ));
             }
             Repeat::Exactly(most) | Repeat::UpTo(most) => most,
         };
@@ -110,7 +112,7 @@ impl Session {
                 break;
             }
         }
-        Ok(Measured::of(&frames))
+        Ok(FrameSummary::of(&frames))
     }
 
     /// Uploads the scene once more, its spherical harmonics stored in another way.
@@ -143,9 +145,9 @@ impl Session {
         clip: &Clip,
         settings: &Settings,
         repeat: u32,
-    ) -> Result<Measured> {
+    ) -> Result<FrameSummary> {
         let frames = (0..repeat).map(|_| self.one(camera, clip, settings));
-        Ok(Measured::of(&frames.collect::<Result<Vec<_>>>()?))
+        Ok(FrameSummary::of(&frames.collect::<Result<Vec<_>>>()?))
     }
 
     /// Renders a frame that takes over nothing.

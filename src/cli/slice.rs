@@ -7,7 +7,7 @@ use rara::{
 };
 
 use super::camera::View;
-use super::combine::Measured;
+use super::combine::FrameSummary;
 use super::failure::Failure;
 use super::session::{Repeat, Session};
 use super::settings::name;
@@ -98,7 +98,7 @@ impl<'a> Slicer<'a> {
         session: &mut Session,
         (view, cut, settings): (&View, &Cut, &Settings),
         repeat: Repeat,
-    ) -> Result<Measured, Failure> {
+    ) -> Result<FrameSummary, Failure> {
         let flat = self.cross_sections(&cut.plane);
         session.reload(&self.flat_scene(&flat), settings.precision.sh)?;
         let shown = settings.show(Show::Mean);

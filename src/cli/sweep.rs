@@ -10,13 +10,13 @@ use rara::{Bounds, Clip, Plane, Settings, Show};
 
 use super::camera::Views;
 use super::clip::{Regions, joined};
-use super::combine::Measured;
+use super::combine::FrameSummary;
 use super::failure::Failure;
 use super::frame::FrameArgs;
 use super::framing;
-use super::kept::Kept;
+use super::kept::SessionCache;
 use super::memory;
-use super::pictures::{self, Destination, Drawn, Order, PictureArgs, Pixels, Plan};
+use super::pictures::{self, Destination, Order, PictureArgs, Pixels, Plan, RenderedPicture};
 use super::profile::{Profile, ProfileArgs};
 use super::region::Region;
 use super::report::{Frame, Report};
@@ -83,7 +83,7 @@ const SEVERAL: &str = "a sweep makes";
 
 impl Sweep {
     pub(super) fn run(self) -> Result<(), Failure> {
-        self.run_in(&mut Kept::default(), None)
+        self.run_in(&mut SessionCache::default(), None)
     }
 
     /// What a run of many commands has to know before it draws any picture.
@@ -114,7 +114,11 @@ impl Sweep {
     }
 
     /// Draws the pictures that are in `order`, or all of them and reports them.
-    pub(super) fn run_in(self, kept: &mut Kept, order: Option<&dyn Order>) -> Result<(), Failure> {
+    pub(super) fn run_in(
+        self,
+        kept: &mut SessionCache,
+        order: Option<&dyn Order>,
+    ) -> Result<(), Failure> {
         let (settings, shapes, views) = self.meant()?;
         let numbers: Vec<_> = (0..self.frames as usize).collect();
         let output = self.output.as_deref();
@@ -131,12 +135,12 @@ impl Sweep {
     fn moving(
         &self,
         meant: impl Fn(&Region) -> rara::Result<Expression>,
-    ) -> Result<Moving, Failure> {
+    ) -> Result<SweepTarget, Failure> {
         let moving = match (self.clip_normal, &self.from, &self.to) {
             (Some(normal), ..) => {
-                Moving::Plane(Plane::new(normal, 0.0).map_err(Failure::usage)?.normal())
+                SweepTarget::Plane(Plane::new(normal, 0.0).map_err(Failure::usage)?.normal())
             }
-            (None, Some(from), Some(to)) => Moving::Region(meant(from)?, meant(to)?),
+            (None, Some(from), Some(to)) => SweepTarget::Region(meant(from)?, meant(to)?),
             _ => unreachable!("one of them is required"),
         };
         for index in 0..self.frames.min(MOST_TRIED) {
@@ -148,7 +152,7 @@ impl Sweep {
 
     fn draw(
         &self,
-        (profile, kept): (&Profile, &mut Kept),
+        (profile, kept): (&Profile, &mut SessionCache),
         (views, regions): (Views, Regions),
         destination: &Destination<'_>,
         settings: &Settings,
@@ -169,8 +173,8 @@ impl Sweep {
             return Ok(());
         };
         let range = match moving {
-            Moving::Plane(normal) => extent_along(&scene, normal),
-            Moving::Region(..) => (0.0, 1.0),
+            SweepTarget::Plane(normal) => extent_along(&scene, normal),
+            SweepTarget::Region(..) => (0.0, 1.0),
         };
         let size = (camera.width, camera.height);
         memory::check_picture(size, 0)?;
@@ -199,12 +203,12 @@ impl Sweep {
             let measured = if self.independent || self.repeat > 1 {
                 session.frame(&camera, &clip, settings, self.repeat)?
             } else {
-                Measured::of(&[session.next_frame(&camera, &clip, settings)?])
+                FrameSummary::of(&[session.next_frame(&camera, &clip, settings)?])
             };
             let plane = moving.plane(position(range, index, self.frames))?;
             let frame = Frame::new(&view, file, plane.as_ref(), measured);
             let stored = file.map(|_| session.last_stored()).transpose()?;
-            Ok(Drawn {
+            Ok(RenderedPicture {
                 picture: stored.map(Pixels::Stored),
                 ..frame.into()
             })
@@ -221,7 +225,7 @@ impl Sweep {
     }
 }
 
-enum Moving {
+enum SweepTarget {
     /// A plane of this unit normal, across the scene.
     Plane(DVec3),
     /// From the first region to the other.
@@ -231,7 +235,7 @@ enum Moving {
 /// The most steps that are tried before the scene is read.
 const MOST_TRIED: u32 = 1000;
 
-impl Moving {
+impl SweepTarget {
     /// The clip in a position: of a plane along its normal, of a region the share of its way.
     fn at(&self, position: f64) -> rara::Result<Expression> {
         Ok(match self {

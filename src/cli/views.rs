@@ -26,14 +26,14 @@ pub(super) enum Views {
     /// Cameras that are known before the scene is loaded.
     Given(Vec<View>),
     /// A camera that the scene will place.
-    Framed(Framed),
+    Framed(Framing),
     /// An orbit round the scene that such a camera frames.
-    Round(Orbit, Framed),
+    Round(Orbit, Framing),
 }
 
 /// A camera that the scene places, but for what flags say of it.
 #[derive(Debug, Clone)]
-pub(super) struct Framed {
+pub(super) struct Framing {
     pub(super) up: DVec3,
     pub(super) lens: Lens,
     pub(super) size: (u32, u32),
@@ -46,7 +46,7 @@ pub(super) struct Framed {
     pub(super) note: Option<String>,
 }
 
-impl Framed {
+impl Framing {
     /// The camera with its lens and its axes: it looks at the middle of what is framed from the eye, if that is said, and
     /// otherwise from the front, the right and above, with its eye anywhere.
     pub(super) fn turned(&self, middle: DVec3) -> Result<Camera, Failure> {
@@ -123,7 +123,7 @@ impl Views {
         self.framed()?.note.clone()
     }
 
-    fn framed(&self) -> Option<&Framed> {
+    fn framed(&self) -> Option<&Framing> {
         match self {
             Self::Given(_) => None,
             Self::Framed(framed) | Self::Round(_, framed) => Some(framed),
@@ -250,7 +250,7 @@ mod tests {
     fn commands_that_measure_keep_the_box_s_camera() {
         let made = rara::scene::generate(rara::scene::Kind::General, 300, 1);
         let bounds = Bounds::of(&made);
-        let plain = Framed {
+        let plain = Framing {
             up: UP,
             lens: Lens::Perspective(50.0),
             size: (64, 48),
@@ -259,19 +259,19 @@ mod tests {
             target: None,
             note: None,
         };
-        let camera = |framed: &Framed| {
+        let camera = |framed: &Framing| {
             let views = Views::Framed(framed.clone()).of(&(&made).into());
             views.expect("a view").remove(0).camera
         };
         let boxed = Camera::frame(&bounds, UP, 50.0, (64, 48)).expect("a view");
         assert_eq!(camera(&plain), boxed);
         let aside = DVec3::new(1.0, 2.0, 3.0);
-        let moved = camera(&Framed {
+        let moved = camera(&Framing {
             target: Some(bounds.centre() + aside),
             ..plain.clone()
         });
         assert!((moved.eye - boxed.eye).distance(aside) < 1e-12);
-        let from = camera(&Framed {
+        let from = camera(&Framing {
             eye: Some(aside),
             ..plain
         });

@@ -90,7 +90,7 @@ fn an_object_lives_until_its_last_call_ends() {
     }
     for (gone, changes) in [(1, false), (2, true)] {
         let handle = add(Counted).expect("a number");
-        let used: (Option<Arc<Counted>>, Option<Alone<Counted>>) = match changes {
+        let used: (Option<Arc<Counted>>, Option<ExclusiveHandle<Counted>>) = match changes {
             true => (None, alone(handle, "counted").ok()),
             false => (alive(handle, "counted").ok(), None),
         };

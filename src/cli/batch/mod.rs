@@ -14,7 +14,7 @@ use rara::Headless;
 use serde_json::json;
 
 use super::failure::Failure;
-use super::kept::Kept;
+use super::kept::SessionCache;
 use super::output::{self, Progress, counted, counted_are, say};
 use super::pictures::{Order, Part, Plan};
 use super::report::Frame;
@@ -70,7 +70,7 @@ pub(super) struct Batch {
 }
 
 /// A job and its pictures.
-struct Planned {
+struct JobPlan {
     job: Job,
     /// A short text stands for its own.
     stamp: String,
@@ -102,9 +102,12 @@ impl Batch {
             return self.say_report(&planned, &share, &state);
         }
         let done = done(&planned, &share, &state);
-        let stale = done.iter().filter(|done| **done == Done::Otherwise).count();
+        let stale = done
+            .iter()
+            .filter(|done| **done == PictureState::Otherwise)
+            .count();
         for ((job, index), done) in share.iter().zip(done) {
-            if done == Done::Not || (self.redraw && done == Done::Otherwise) {
+            if done == PictureState::Not || (self.redraw && done == PictureState::Otherwise) {
                 let one = &mut planned[*job];
                 let (number, _) = one.plan.pictures[*index];
                 one.wanted.insert(number, *index);
@@ -150,8 +153,8 @@ impl Batch {
     }
 
     /// All jobs, those of one scene one after the other.
-    fn planned(&self) -> Result<Vec<Planned>, Failure> {
-        let mut planned: Vec<Planned> = Vec::new();
+    fn planned(&self) -> Result<Vec<JobPlan>, Failure> {
+        let mut planned: Vec<JobPlan> = Vec::new();
         let mut names: HashMap<String, String> = HashMap::new();
         for file in &self.files {
             for job in jobs::read(file)? {
@@ -170,7 +173,7 @@ impl Batch {
                         )));
                     }
                 }
-                planned.push(Planned {
+                planned.push(JobPlan {
                     stamp: stamp(&format!("{:?}", job.words)),
                     job,
                     plan,
@@ -188,7 +191,7 @@ impl Batch {
     }
 
     /// The pictures of this worker's share: the numbers of a job and of its picture.
-    fn share(&self, planned: &[Planned]) -> Result<Vec<(usize, usize)>, Failure> {
+    fn share(&self, planned: &[JobPlan]) -> Result<Vec<(usize, usize)>, Failure> {
         let looks = self.status || self.report;
         let part = match self.shard {
             None if !looks => shard::of_scheduler(|name| std::env::var(name).ok())?,
@@ -226,13 +229,16 @@ impl Batch {
 
     fn say_status(
         &self,
-        planned: &[Planned],
+        planned: &[JobPlan],
         share: &[(usize, usize)],
         state: &State,
     ) -> Result<(), Failure> {
         let missing = missing(planned, share, state);
         let done = done(planned, share, state);
-        let old = done.iter().filter(|done| **done == Done::Otherwise).count();
+        let old = done
+            .iter()
+            .filter(|done| **done == PictureState::Otherwise)
+            .count();
         let there = share.len() - missing.len();
         if self.json {
             output::json(&json!({
@@ -250,7 +256,7 @@ impl Batch {
 
     fn say_report(
         &self,
-        planned: &[Planned],
+        planned: &[JobPlan],
         share: &[(usize, usize)],
         state: &State,
     ) -> Result<(), Failure> {
@@ -303,14 +309,14 @@ impl Job {
 }
 
 /// The driver that would draw the first job, if any picture is to be compared with it.
-fn driver(planned: &[Planned], state: &State) -> Option<String> {
+fn driver(planned: &[JobPlan], state: &State) -> Option<String> {
     let first = planned.first().filter(|_| !state.entries.is_empty())?;
     let headless = Headless::new(&first.plan.device).ok()?;
     Some(headless.driver().to_owned())
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Done {
+enum PictureState {
     Not,
     /// It was drawn by another job, version or driver.
     Otherwise,
@@ -319,29 +325,29 @@ enum Done {
 }
 
 /// What is done of each picture of a share.
-fn done(planned: &[Planned], share: &[(usize, usize)], state: &State) -> Vec<Done> {
+fn done(planned: &[JobPlan], share: &[(usize, usize)], state: &State) -> Vec<PictureState> {
     let driver = driver(planned, state);
     let of = |(job, index): &(usize, usize)| {
         let one = &planned[*job];
         let entry = state.entries.get(&one.plan.pictures[*index].1);
         match entry.filter(|entry| entry.is_there()) {
-            None => Done::Not,
+            None => PictureState::Not,
             Some(entry)
                 if entry.job == one.stamp
                     && entry.version == env!("CARGO_PKG_VERSION")
                     // Without a driver any will do.
                     && driver.as_ref().is_none_or(|driver| entry.driver == *driver) =>
             {
-                Done::Likewise
+                PictureState::Likewise
             }
-            Some(_) => Done::Otherwise,
+            Some(_) => PictureState::Otherwise,
         }
     };
     share.iter().map(of).collect()
 }
 
 /// The pictures of a share that are not there.
-fn missing<'a>(planned: &'a [Planned], share: &[(usize, usize)], state: &State) -> Vec<&'a str> {
+fn missing<'a>(planned: &'a [JobPlan], share: &[(usize, usize)], state: &State) -> Vec<&'a str> {
     let name = |(job, index): &(usize, usize)| planned[*job].plan.pictures[*index].1.as_str();
     let entry = |name: &str| state.entries.get(name);
     let is_missing = |name: &&str| !entry(name).is_some_and(Entry::is_there);
@@ -369,8 +375,8 @@ fn refuse(missing: &[&str]) -> Result<(), Failure> {
 }
 
 /// Draws the pictures that are wanted, job by job. A job that fails is said, and the others are drawn.
-fn draw(planned: &[Planned], folder: &Path, state: &State, prints: bool) -> Result<(), Failure> {
-    let left: Vec<&Planned> = planned
+fn draw(planned: &[JobPlan], folder: &Path, state: &State, prints: bool) -> Result<(), Failure> {
+    let left: Vec<&JobPlan> = planned
         .iter()
         .filter(|one| !one.wanted.is_empty())
         .collect();
@@ -378,7 +384,7 @@ fn draw(planned: &[Planned], folder: &Path, state: &State, prints: bool) -> Resu
         return Ok(());
     }
     let worker = Worker::new(folder)?;
-    let work = |one: &&Planned| one.plan.work * one.wanted.len() as f64;
+    let work = |one: &&JobPlan| one.plan.work * one.wanted.len() as f64;
     let run = Run {
         worker: &worker,
         state,
@@ -391,7 +397,7 @@ fn draw(planned: &[Planned], folder: &Path, state: &State, prints: bool) -> Resu
             all: times::sum(left.iter().map(work)),
         }),
     };
-    let mut kept = Kept::wanted();
+    let mut kept = SessionCache::wanted();
     for one in left {
         let order = OneJob {
             run: &run,
@@ -452,7 +458,7 @@ impl Pace {
 /// A run asks this of one of its jobs.
 struct OneJob<'a> {
     run: &'a Run<'a>,
-    planned: &'a Planned,
+    planned: &'a JobPlan,
     /// Each picture that is being drawn has one.
     claims: Mutex<HashMap<usize, Claim>>,
     driver: Mutex<String>,

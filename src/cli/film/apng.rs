@@ -10,17 +10,17 @@ use rara::{Error, Result};
 use super::{Place, wanted};
 
 pub(in super::super) struct Apng {
-    encoder: Writer<Shared>,
-    place: Shared,
+    encoder: Writer<SharedWriter>,
+    place: SharedWriter,
     /// What it becomes, for messages.
     file: PathBuf,
 }
 
 /// The place that the encoder writes to, which outlives it.
 #[derive(Clone)]
-struct Shared(Arc<Mutex<Place>>);
+struct SharedWriter(Arc<Mutex<Place>>);
 
-impl Write for Shared {
+impl Write for SharedWriter {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         let mut place = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         place.write(bytes)
@@ -41,7 +41,7 @@ impl Apng {
         frames: usize,
         fps: u16,
     ) -> Result<Self> {
-        let place = Shared(Arc::new(Mutex::new(place)));
+        let place = SharedWriter(Arc::new(Mutex::new(place)));
         let begin = || {
             let mut encoder = Encoder::new(place.clone(), width, height);
             encoder.set_color(ColorType::Rgba);

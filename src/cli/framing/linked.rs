@@ -26,7 +26,7 @@ const PLACES: i32 = 16;
 
 /// A Gaussian and what it weighs.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Weighed {
+pub(super) struct WeightedPoint {
     pub(super) reach: Reach,
     pub(super) opacity: f64,
     /// Its largest deviation.
@@ -34,13 +34,13 @@ pub(super) struct Weighed {
 }
 
 /// Those that are framed. A `generous` choice takes ten times as little for worth showing.
-pub(super) fn framed(all: &[Weighed], generous: bool) -> Vec<Reach> {
+pub(super) fn framed(all: &[WeightedPoint], generous: bool) -> Vec<Reach> {
     let Some(cell) = cell(all) else {
         return all.iter().map(|one| one.reach).collect();
     };
     let unit = LARGEST * median(all.iter().map(|one| one.size));
     // Squared, since what is faint is hardly seen before what is not.
-    let weight = |one: &Weighed| one.opacity.powi(2) * one.size.min(unit);
+    let weight = |one: &WeightedPoint| one.opacity.powi(2) * one.size.min(unit);
     let mut parts = parts(all, cell);
     let weights = |part: &[u32]| part.iter().map(|&i| weight(&all[i as usize])).sum::<f64>();
     let mut weighed: Vec<(f64, Vec<u32>)> = parts.drain(..).map(|p| (weights(&p), p)).collect();
@@ -84,7 +84,7 @@ fn median(numbers: impl Iterator<Item = f64>) -> f64 {
 }
 
 /// The side of cells in which Gaussians are as near as is usual; none where all are in one place.
-fn cell(all: &[Weighed]) -> Option<f64> {
+fn cell(all: &[WeightedPoint]) -> Option<f64> {
     let spread = |axis: usize| {
         let mut along: Vec<f64> = all.iter().map(|one| one.reach.centre[axis]).collect();
         along.sort_unstable_by(f64::total_cmp);
@@ -129,10 +129,10 @@ fn key(at: DVec3, cell: f64) -> u64 {
 }
 
 /// The parts that are linked.
-fn parts(all: &[Weighed], cell: f64) -> Vec<Vec<u32>> {
+fn parts(all: &[WeightedPoint], cell: f64) -> Vec<Vec<u32>> {
     // What is in which cell: Gaussians by their centres, and by places on their axes.
     let mut inside: Vec<(u64, u32)> = Vec::with_capacity(all.len());
-    for (index, Weighed { reach, .. }) in all.iter().enumerate() {
+    for (index, WeightedPoint { reach, .. }) in all.iter().enumerate() {
         let index = index as u32;
         inside.push((key(reach.centre, cell), index));
         let axes = [reach.axes.x_axis, reach.axes.y_axis, reach.axes.z_axis];

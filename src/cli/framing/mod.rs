@@ -13,7 +13,7 @@ use super::failure::Failure;
 use super::lens::Lens;
 use super::output;
 use super::path::Orbit;
-use super::views::Framed;
+use super::views::Framing;
 pub(super) use visible::Visible;
 
 /// The cameras, once the scene is known.
@@ -41,7 +41,7 @@ pub(super) fn views_of(views: Views, visible: &Visible) -> Result<Vec<View>, Fai
 }
 
 /// The camera that holds what is visible, or looks at it from where a flag says.
-fn held(framed: &Framed, visible: &Visible) -> Result<Camera, Failure> {
+fn held(framed: &Framing, visible: &Visible) -> Result<Camera, Failure> {
     let camera = framed.turned(visible.middle)?;
     let placed = match framed.lens {
         _ if framed.eye.is_some() => camera,
@@ -67,7 +67,7 @@ const PLACES: usize = 64;
 
 /// An orbit round the middle of what is visible, or round the target, as near as shows all of it from everywhere; from the eye
 /// where a flag says it.
-fn round(orbit: Orbit, framed: &Framed, visible: &Visible) -> Result<Vec<View>, Failure> {
+fn round(orbit: Orbit, framed: &Framing, visible: &Visible) -> Result<Vec<View>, Failure> {
     let pivot = framed.target.unwrap_or(visible.middle);
     let camera = framed.depths.of(framed.turned(pivot)?)?;
     let places = orbit.views(camera, (pivot, framed.up));

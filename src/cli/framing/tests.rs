@@ -6,13 +6,13 @@ use rara::{Camera, Gaussians, Layer, LayerState, Placement, Plane, Projection, S
 
 use super::super::lens::{Depths, Lens};
 use super::super::path::Orbit;
-use super::super::views::Framed;
+use super::super::views::Framing;
 use super::*;
 
 const UP: DVec3 = DVec3::NEG_Y;
 
-fn framed(lens: Lens, size: (u32, u32)) -> Framed {
-    Framed {
+fn framed(lens: Lens, size: (u32, u32)) -> Framing {
+    Framing {
         up: UP,
         lens,
         size,
@@ -23,7 +23,7 @@ fn framed(lens: Lens, size: (u32, u32)) -> Framed {
     }
 }
 
-fn camera<'a>(framed: Framed, scene: impl Into<Scene<'a>>) -> Camera {
+fn camera<'a>(framed: Framing, scene: impl Into<Scene<'a>>) -> Camera {
     let views = views(Views::Framed(framed), &scene.into());
     views.expect("a view").remove(0).camera
 }
@@ -257,7 +257,7 @@ fn an_orbit_holds_what_is_visible_in_every_place() {
         assert!((0.9..0.93).contains(&widest), "{lens:?}: {widest}");
         // Round a target it is wider, and each place looks at the target.
         let target = DVec3::new(0.5, 0.0, 0.3);
-        for camera in round(Framed {
+        for camera in round(Framing {
             target: Some(target),
             ..plain
         }) {
@@ -276,7 +276,7 @@ fn an_eye_or_a_target_by_itself_keeps_the_rest_of_the_frame() {
     let usual = camera(plain.clone(), &made);
     let eye = DVec3::new(-3.0, 0.0, 1.0);
     let from = camera(
-        Framed {
+        Framing {
             eye: Some(eye),
             ..plain.clone()
         },
@@ -288,7 +288,7 @@ fn an_eye_or_a_target_by_itself_keeps_the_rest_of_the_frame() {
     // The middle is as far away as before, and in the same direction.
     let target = DVec3::new(5.0, -2.0, 0.0);
     let at = camera(
-        Framed {
+        Framing {
             target: Some(target),
             ..plain
         },

@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec2, DVec3, Vec3Swizzles};
 use rara::{Camera, Plane, Scene};
 
-use super::linked::{Weighed, framed};
+use super::linked::{WeightedPoint, framed};
 use super::reach::Reach;
 
 /// Share of the picture that is filled.
@@ -65,7 +65,7 @@ impl Visible {
                     centre: state.placement.to_world(centre),
                     axes: DMat3::from_quat(turn) * DMat3::from_diagonal(sigmas * scales),
                 };
-                shows.then_some(Weighed {
+                shows.then_some(WeightedPoint {
                     reach,
                     opacity,
                     size: scales.max_element(),

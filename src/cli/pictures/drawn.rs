@@ -7,7 +7,7 @@ use rara::{Channel, Picture, StoredPicture};
 use super::super::report::Frame;
 
 /// A picture that was drawn, and what it took.
-pub(in super::super) struct Drawn {
+pub(in super::super) struct RenderedPicture {
     /// The line of the report.
     pub(in super::super) frame: Frame,
     /// The frames that it is made of, if they are several.
@@ -34,7 +34,7 @@ impl Pixels {
 }
 
 /// A frame whose picture is not written.
-impl From<Frame> for Drawn {
+impl From<Frame> for RenderedPicture {
     fn from(frame: Frame) -> Self {
         Self {
             frame,
@@ -47,7 +47,7 @@ impl From<Frame> for Drawn {
 
 /// The frames and files of a run, once all pictures are drawn.
 #[derive(Default)]
-pub(in super::super) struct Written {
+pub(in super::super) struct WrittenPictures {
     pub(in super::super) pictures: Vec<Frame>,
     /// The frames that these are made of, where they are several each.
     pub(in super::super) faces: Vec<Frame>,

@@ -21,7 +21,7 @@ use super::pattern::filled;
 use super::report::{Answer, Frame};
 use super::scenes::SceneArgs;
 use super::values::{self, STANDARD};
-pub(super) use drawn::{Drawn, Pixels};
+pub(super) use drawn::{Pixels, RenderedPicture};
 pub(super) use part::Part;
 
 /// What becomes of pictures, and of what is measured.
@@ -100,7 +100,7 @@ enum Place {
 }
 
 /// A picture that is to be drawn, and its file.
-pub(super) struct Planned<T> {
+pub(super) struct PictureJob<T> {
     /// In the whole run.
     number: usize,
     pub(super) what: T,
@@ -333,11 +333,11 @@ impl Destination<'_> {
         &self,
         all: Vec<T>,
         called: impl Fn(&T) -> (usize, String),
-    ) -> Result<Option<Vec<Planned<T>>>, Failure> {
+    ) -> Result<Option<Vec<PictureJob<T>>>, Failure> {
         let of_one = |what| {
             let (number, name) = called(&what);
             let file = self.file(number, &name);
-            Planned { number, what, file }
+            PictureJob { number, what, file }
         };
         let mut planned: Vec<_> = all.into_iter().map(of_one).collect();
         if !matches!(self.place, Place::Film(..)) {
@@ -395,11 +395,11 @@ impl Destination<'_> {
 }
 
 fn check_distinct<T>(
-    planned: &[Planned<T>],
+    planned: &[PictureJob<T>],
     called: impl Fn(&T) -> (usize, String),
 ) -> Result<(), Failure> {
     let mut files = HashMap::new();
-    for Planned { what, file, .. } in planned {
+    for PictureJob { what, file, .. } in planned {
         let Some(file) = file else {
             return Ok(());
         };

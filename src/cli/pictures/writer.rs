@@ -9,8 +9,8 @@ use super::super::film::Film;
 use super::super::output::{self, Progress};
 use super::super::profile::Profile;
 use super::super::report::Answer;
-use super::drawn::{Drawn, Written};
-use super::{Destination, Place, Planned};
+use super::drawn::{RenderedPicture, WrittenPictures};
+use super::{Destination, PictureJob, Place};
 
 /// The most memory of pictures that wait to be encoded, bytes.
 const WAITING: u64 = 256 << 20;
@@ -18,7 +18,7 @@ const WAITING: u64 = 256 << 20;
 /// What has become of the pictures that were drawn. They are counted in the order in which they were.
 #[derive(Default)]
 struct Outcome {
-    written: Written,
+    written: WrittenPictures,
     /// The number of pictures that are reported.
     reported: usize,
     /// True where nobody wants more.
@@ -30,7 +30,7 @@ struct Outcome {
 struct Writer<'a, T> {
     destination: &'a Destination<'a>,
     profile: &'a Profile,
-    planned: &'a [Planned<T>],
+    planned: &'a [PictureJob<T>],
     film: Option<Mutex<Film>>,
     outcome: Mutex<Outcome>,
     /// Told of each change of the outcome.
@@ -43,15 +43,15 @@ impl Destination<'_> {
         &self,
         what: &'static str,
         profile: &Profile,
-        (planned, size): (&[Planned<T>], (u32, u32)),
-        mut draw: impl FnMut(&Planned<T>) -> Result<Drawn, Failure>,
-    ) -> Result<Written, Failure> {
+        (planned, size): (&[PictureJob<T>], (u32, u32)),
+        mut draw: impl FnMut(&PictureJob<T>) -> Result<RenderedPicture, Failure>,
+    ) -> Result<WrittenPictures, Failure> {
         let film = match &self.place {
             Place::Film(kind, file) => {
                 if let Some(order) = self.order
                     && !order.begin(0, Some(file))?
                 {
-                    return Ok(Written::default());
+                    return Ok(WrittenPictures::default());
                 }
                 let film = self.args.film.begin(*kind, file, size, planned.len())?;
                 Some(Mutex::new(film))
@@ -72,7 +72,7 @@ impl Destination<'_> {
             outcome: Mutex::default(),
             changed: Condvar::new(),
         };
-        let (pictures, waiting) = mpsc::sync_channel::<(usize, usize, Drawn)>(threads);
+        let (pictures, waiting) = mpsc::sync_channel::<(usize, usize, RenderedPicture)>(threads);
         let waiting = Mutex::new(waiting);
         // Whoever waits for an earlier picture's turn knows that it gets one: they become unsettled in their order.
         let next = || {
@@ -142,7 +142,7 @@ impl<T> Writer<'_, T> {
     }
 
     /// Puts a picture to its place, and reports it in its turn.
-    fn put(&self, turn: usize, index: usize, mut drawn: Drawn) {
+    fn put(&self, turn: usize, index: usize, mut drawn: RenderedPicture) {
         let one = &self.planned[index];
         let saved = self.save(one, &mut drawn);
         let mut outcome = self.outcome();
@@ -167,7 +167,7 @@ impl<T> Writer<'_, T> {
     }
 
     /// Encodes and writes a picture; false where nobody wants more.
-    fn save(&self, one: &Planned<T>, drawn: &mut Drawn) -> Result<bool, Failure> {
+    fn save(&self, one: &PictureJob<T>, drawn: &mut RenderedPicture) -> Result<bool, Failure> {
         let (Some(pixels), Some(file)) = (drawn.picture.take(), &one.file) else {
             return Ok(true);
         };
@@ -190,9 +190,9 @@ impl<T> Writer<'_, T> {
     /// Reports a picture that is at its place; false where nobody wants more.
     fn report(
         &self,
-        written: &mut Written,
-        one: &Planned<T>,
-        Drawn { frame, faces, .. }: Drawn,
+        written: &mut WrittenPictures,
+        one: &PictureJob<T>,
+        RenderedPicture { frame, faces, .. }: RenderedPicture,
         mut is_wanted: bool,
     ) -> Result<bool, Failure> {
         if let Some(file) = &one.file {
@@ -213,7 +213,7 @@ impl<T> Writer<'_, T> {
     }
 
     /// The pictures and files, once all that were `drawn` are written. The first failure is returned.
-    fn finish(self, drawn: Result<(), Failure>) -> Result<Written, Failure> {
+    fn finish(self, drawn: Result<(), Failure>) -> Result<WrittenPictures, Failure> {
         let outcome = self.outcome.into_inner();
         let Outcome {
             written, failure, ..

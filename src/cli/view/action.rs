@@ -30,7 +30,7 @@ pub(super) enum Action {
     NextView,
     /// Take the next of the named clips that were dropped in one file.
     NextClip,
-    Held(HeldAction),
+    Held(GripAction),
     /// Show a layer or hide it; whichever it is not where that is not said.
     Layer(Which, Option<bool>),
     /// Choose the clip that is edited.
@@ -87,7 +87,7 @@ pub(super) enum Edit {
 
 /// An action on the clip that is edited, or on its held shape.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum HeldAction {
+pub(super) enum GripAction {
     /// Switch the clip on or off.
     On(bool),
     Toggle,
@@ -164,9 +164,9 @@ impl FromStr for Action {
             "clip" if rest == "next" => Self::NextClip,
             "clip" => return Err(format!("clip {rest}: next is possible")),
             "plane" | "shape" => Self::Held(held(verb, rest)?),
-            "drag" => Self::Held(HeldAction::Drag(pair(rest)?)),
-            "tilt" => Self::Held(HeldAction::Tilt(pair(rest)?)),
-            "scale" => Self::Held(HeldAction::Scale(factor(rest)?)),
+            "drag" => Self::Held(GripAction::Drag(pair(rest)?)),
+            "tilt" => Self::Held(GripAction::Tilt(pair(rest)?)),
+            "scale" => Self::Held(GripAction::Scale(factor(rest)?)),
             "layer" => layer(rest)?,
             "edit" => Self::Edit(match rest {
                 "next" => Edit::Next,
@@ -215,25 +215,25 @@ impl FromStr for Action {
 }
 
 /// What follows `shape`, or `plane`.
-fn held(verb: &str, text: &str) -> Result<HeldAction, String> {
+fn held(verb: &str, text: &str) -> Result<GripAction, String> {
     if let Some(on) = switch(text) {
-        return Ok(HeldAction::On(on));
+        return Ok(GripAction::On(on));
     }
     Ok(match text {
-        "flip" => HeldAction::Flip,
-        "next" => HeldAction::Next,
-        "x" => HeldAction::Align(DVec3::X),
-        "y" => HeldAction::Align(DVec3::Y),
-        "z" => HeldAction::Align(DVec3::Z),
-        by if !by.contains(',') && by.starts_with(['+', '-']) => HeldAction::Go(number(by)?),
+        "flip" => GripAction::Flip,
+        "next" => GripAction::Next,
+        "x" => GripAction::Align(DVec3::X),
+        "y" => GripAction::Align(DVec3::Y),
+        "z" => GripAction::Align(DVec3::Z),
+        by if !by.contains(',') && by.starts_with(['+', '-']) => GripAction::Go(number(by)?),
         shape if shape.contains(':') => {
             let shape = shape.parse::<Shape>().map_err(|error| error.to_string())?;
-            HeldAction::Set(shape)
+            GripAction::Set(shape)
         }
         four if four.contains(',') => {
             let [x, y, z, d] = values::numbers::<4>(four)?;
             let plane = Plane::new(DVec3::new(x, y, z), d).map_err(|error| error.to_string())?;
-            HeldAction::Set(plane.into())
+            GripAction::Set(plane.into())
         }
         other => {
             return Err(format!(
@@ -293,22 +293,22 @@ mod tests {
 
     #[test]
     fn what_is_written_is_what_is_done() {
-        assert_eq!(parsed("plane +0.1"), Action::Held(HeldAction::Go(0.1)));
-        assert_eq!(parsed("plane -2e-3"), Action::Held(HeldAction::Go(-2e-3)));
-        assert_eq!(parsed("plane  off "), Action::Held(HeldAction::On(false)));
+        assert_eq!(parsed("plane +0.1"), Action::Held(GripAction::Go(0.1)));
+        assert_eq!(parsed("plane -2e-3"), Action::Held(GripAction::Go(-2e-3)));
+        assert_eq!(parsed("plane  off "), Action::Held(GripAction::On(false)));
         assert_eq!(
             parsed("plane -1,0,0,2"),
-            Action::Held(HeldAction::Set(Plane::new(-DVec3::X, 2.0).unwrap().into()))
+            Action::Held(GripAction::Set(Plane::new(-DVec3::X, 2.0).unwrap().into()))
         );
         assert_eq!(
             parsed("tilt -5,2.5"),
-            Action::Held(HeldAction::Tilt(DVec2::new(-5.0, 2.5)))
+            Action::Held(GripAction::Tilt(DVec2::new(-5.0, 2.5)))
         );
         assert_eq!(
             parsed("shape !sphere:0,0,0,1"),
-            Action::Held(HeldAction::Set("!sphere:0,0,0,1".parse().unwrap()))
+            Action::Held(GripAction::Set("!sphere:0,0,0,1".parse().unwrap()))
         );
-        assert_eq!(parsed("scale 1.5"), Action::Held(HeldAction::Scale(1.5)));
+        assert_eq!(parsed("scale 1.5"), Action::Held(GripAction::Scale(1.5)));
         let which = |text: &str| Which::Typed(text.into());
         assert_eq!(parsed("layer 2"), Action::Layer(which("2"), None));
         assert_eq!(

@@ -17,7 +17,7 @@ use winit::window::{Window, WindowId};
 use super::action::Action;
 use super::display::without_place;
 use super::input::Input;
-use super::loading::{Fresh, Load};
+use super::loading::{Load, LoadedWindow};
 use super::lost;
 use super::scenery::Manner;
 use super::script;
@@ -26,11 +26,11 @@ use crate::failure::Failure;
 use crate::output::say;
 
 /// A message to the event loop from another thread.
-pub(super) enum Sent {
+pub(super) enum AppEvent {
     /// What standard input says as a script.
     Script(Result<Vec<Action>, Failure>),
     /// A scene that has been read, or why it could not be.
-    Read(Box<Result<Fresh, Failure>>),
+    Read(Box<Result<LoadedWindow, Failure>>),
 }
 
 pub(super) struct Start {
@@ -47,7 +47,7 @@ pub(super) struct Start {
 
 struct App {
     start: Option<Start>,
-    proxy: EventLoopProxy<Sent>,
+    proxy: EventLoopProxy<AppEvent>,
     stage: Option<Viewer>,
     input: Input,
     script: VecDeque<Action>,
@@ -68,13 +68,13 @@ const RESIZE_PATIENCE: Duration = Duration::from_secs(5);
 const LONGEST_STEP: Duration = Duration::from_millis(100);
 
 /// Opens the window and stays until it is closed.
-pub(super) fn run(events: EventLoop<Sent>, mut start: Start) -> Result<(), Failure> {
+pub(super) fn run(events: EventLoop<AppEvent>, mut start: Start) -> Result<(), Failure> {
     let proxy = events.create_proxy();
     if start.follow {
         let proxy = proxy.clone();
         // The thread ends with standard input, or with the program.
         thread::spawn(move || {
-            script::follow(|actions| proxy.send_event(Sent::Script(actions)).is_ok())
+            script::follow(|actions| proxy.send_event(AppEvent::Script(actions)).is_ok())
         });
     }
     let mut app = App {
@@ -296,7 +296,7 @@ impl App {
     }
 }
 
-impl ApplicationHandler<Sent> for App {
+impl ApplicationHandler<AppEvent> for App {
     fn resumed(&mut self, events: &ActiveEventLoop) {
         if let Some(start) = self.start.take() {
             let opened = self.open(events, start);
@@ -304,15 +304,15 @@ impl ApplicationHandler<Sent> for App {
         }
     }
 
-    fn user_event(&mut self, events: &ActiveEventLoop, sent: Sent) {
+    fn user_event(&mut self, events: &ActiveEventLoop, sent: AppEvent) {
         match (sent, &mut self.stage) {
-            (Sent::Script(Ok(actions)), _) => self.script.extend(actions),
-            (Sent::Script(Err(failure)), _) => self.end(events, Err(failure)),
-            (Sent::Read(outcome), Some(stage)) => {
+            (AppEvent::Script(Ok(actions)), _) => self.script.extend(actions),
+            (AppEvent::Script(Err(failure)), _) => self.end(events, Err(failure)),
+            (AppEvent::Read(outcome), Some(stage)) => {
                 let arrived = stage.arrive(*outcome);
                 self.end(events, arrived);
             }
-            (Sent::Read(_), None) => {}
+            (AppEvent::Read(_), None) => {}
         }
     }
 

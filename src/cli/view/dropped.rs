@@ -11,7 +11,7 @@ use crate::json_kind::{self, JsonKind};
 use crate::{scene_file, training};
 
 #[derive(Debug)]
-pub(super) enum Dropped {
+pub(super) enum DroppedFile {
     /// A scene, which is yet to be read.
     Scene,
     Clip(Vec<NamedClip>),
@@ -19,7 +19,7 @@ pub(super) enum Dropped {
     Cameras(Vec<Camera>),
 }
 
-impl Dropped {
+impl DroppedFile {
     /// Finds out what a file is, and reads it unless it is a scene.
     pub(super) fn of(path: &Path) -> Result<Self, Failure> {
         let facts = std::fs::metadata(path).map_err(Error::io(path))?;
@@ -100,22 +100,22 @@ mod tests {
             path
         };
         let clip = put("clip.json", "\u{feff}[{\"normal\":[0,0,1],\"d\":2}]");
-        assert!(matches!(Dropped::of(&clip), Ok(Dropped::Clip(all)) if all.len() == 1));
-        let scene = |path: &Path| matches!(Dropped::of(path), Ok(Dropped::Scene));
+        assert!(matches!(DroppedFile::of(&clip), Ok(DroppedFile::Clip(all)) if all.len() == 1));
+        let scene = |path: &Path| matches!(DroppedFile::of(path), Ok(DroppedFile::Scene));
         assert!(scene(&put("a.splat", "")) && scene(&put("broken.json", "{")));
         assert!(scene(&put("meta.json", "{}")) && scene(&sog));
         assert_eq!(kind(&folder.join("colmap")), JsonKind::Cameras);
         assert_eq!(kind(&folder.join("colmap/cameras.txt")), JsonKind::Cameras);
-        let error = Dropped::of(&folder.join("none.ply"))
+        let error = DroppedFile::of(&folder.join("none.ply"))
             .unwrap_err()
             .to_string();
         assert!(error.contains("none.ply"), "{error}");
         let empty = put("empty.json", "[]");
-        let error = Dropped::of(&empty).unwrap_err().to_string();
+        let error = DroppedFile::of(&empty).unwrap_err().to_string();
         assert!(error.contains("no clip in it"), "{error}");
         let planes = vec![r#"{"normal":[0,0,1],"d":2}"#; MOST_SURFACES + 1].join(",");
         let many = put("many.json", &format!("[{planes}]"));
-        let error = Dropped::of(&many).unwrap_err().to_string();
+        let error = DroppedFile::of(&many).unwrap_err().to_string();
         assert!(
             error.contains("many.json") && error.contains("65 537 surfaces"),
             "{error}"
@@ -126,7 +126,9 @@ mod tests {
     #[cfg(unix)]
     #[test]
     fn nobody_waits_for_a_device() {
-        let error = Dropped::of(Path::new("/dev/null")).unwrap_err().to_string();
+        let error = DroppedFile::of(Path::new("/dev/null"))
+            .unwrap_err()
+            .to_string();
         assert!(error.contains("neither a file nor a folder"), "{error}");
     }
 }

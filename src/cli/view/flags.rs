@@ -117,7 +117,7 @@ mod tests {
     use super::*;
     use crate::clip::ClipArgs;
     use crate::settings::SettingsArgs;
-    use crate::view::action::HeldAction;
+    use crate::view::action::GripAction;
     use crate::view::cut::Cut;
     use clap::{Args as _, FromArgMatches as _};
     use glam::{DVec2, DVec3};
@@ -327,12 +327,12 @@ mod tests {
             for step in 0..6 {
                 let pixels = 40.0 * DVec2::new(numbers.any(), numbers.any());
                 let action = match step {
-                    0 => HeldAction::Drag(pixels),
-                    1 => HeldAction::Tilt(pixels),
-                    2 => HeldAction::Scale(1.5 + numbers.any()),
-                    3 => HeldAction::Flip,
-                    4 => HeldAction::Go(numbers.any()),
-                    _ => HeldAction::Next,
+                    0 => GripAction::Drag(pixels),
+                    1 => GripAction::Tilt(pixels),
+                    2 => GripAction::Scale(1.5 + numbers.any()),
+                    3 => GripAction::Flip,
+                    4 => GripAction::Go(numbers.any()),
+                    _ => GripAction::Next,
                 };
                 clips.act(action, &camera, 1.0);
                 let written = flags(&camera, &clips, &Settings::default());

@@ -6,7 +6,7 @@ use rara::Redraw;
 
 use super::loading::Loading;
 use super::outlines;
-use super::overlay::Seen;
+use super::overlay::OverlayScene;
 use super::scenery::{Manner, Scenery};
 use super::stage::Viewer;
 use super::text::Progress;
@@ -116,8 +116,8 @@ impl Viewer {
     }
 
     /// What there is to say of the picture.
-    fn seen(&self, size: (u32, u32)) -> Seen<'_> {
-        Seen {
+    fn seen(&self, size: (u32, u32)) -> OverlayScene<'_> {
+        OverlayScene {
             clips: self.loaded.then_some(&self.scenery.clips),
             mode: self.manner.settings.mode,
             stats: self.windowed.stats(),

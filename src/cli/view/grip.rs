@@ -6,24 +6,24 @@ use glam::{DQuat, DVec2, DVec3};
 use rara::clip::Parameter;
 use rara::{Camera, Placement, Projection, Shape};
 
-use super::action::HeldAction;
+use super::action::GripAction;
 use super::cut::Cut;
 
 impl Cut {
     /// Does what is asked of the held shape, in a scene of this radius.
-    pub(super) fn act(&mut self, action: HeldAction, camera: &Camera, radius: f64) {
+    pub(super) fn act(&mut self, action: GripAction, camera: &Camera, radius: f64) {
         match action {
-            HeldAction::On(on) => self.on = on,
-            HeldAction::Toggle => self.on = !self.on,
-            HeldAction::Flip => self.flip(),
-            HeldAction::Next => self.next(),
-            HeldAction::Align(axis) => self.align(axis),
-            HeldAction::Set(shape) => self.set(shape),
-            HeldAction::Go(by) => self.go(by, camera),
-            HeldAction::Step(steps) => self.go(0.01 * steps * radius, camera),
-            HeldAction::Drag(pixels) => self.drag(pixels, camera),
-            HeldAction::Tilt(degrees) => self.tilt(degrees, camera),
-            HeldAction::Scale(factor) => self.scale(factor),
+            GripAction::On(on) => self.on = on,
+            GripAction::Toggle => self.on = !self.on,
+            GripAction::Flip => self.flip(),
+            GripAction::Next => self.next(),
+            GripAction::Align(axis) => self.align(axis),
+            GripAction::Set(shape) => self.set(shape),
+            GripAction::Go(by) => self.go(by, camera),
+            GripAction::Step(steps) => self.go(0.01 * steps * radius, camera),
+            GripAction::Drag(pixels) => self.drag(pixels, camera),
+            GripAction::Tilt(degrees) => self.tilt(degrees, camera),
+            GripAction::Scale(factor) => self.scale(factor),
         }
     }
 
@@ -213,11 +213,11 @@ mod tests {
     #[test]
     fn every_shape_comes_back_from_where_it_was_moved_turned_and_scaled_to() {
         let degrees = DVec2::new(25.0, -40.0);
-        let there_and_back: [[HeldAction; 2]; 4] = [
-            [HeldAction::Go(0.7), HeldAction::Go(-0.7)],
-            [HeldAction::Step(30.0), HeldAction::Step(-30.0)],
-            [HeldAction::Tilt(degrees), HeldAction::Tilt(-degrees)],
-            [HeldAction::Scale(1.7), HeldAction::Scale(1.0 / 1.7)],
+        let there_and_back: [[GripAction; 2]; 4] = [
+            [GripAction::Go(0.7), GripAction::Go(-0.7)],
+            [GripAction::Step(30.0), GripAction::Step(-30.0)],
+            [GripAction::Tilt(degrees), GripAction::Tilt(-degrees)],
+            [GripAction::Scale(1.7), GripAction::Scale(1.0 / 1.7)],
         ];
         for camera in cameras() {
             for text in SHAPES {
@@ -227,8 +227,8 @@ mod tests {
                         moved.act(there, &camera, 2.0);
                         let is_flat = text.starts_with("plane");
                         let is_round = text.starts_with("sphere");
-                        let stays = matches!(there, HeldAction::Scale(_)) && is_flat
-                            || matches!(there, HeldAction::Tilt(_)) && is_round;
+                        let stays = matches!(there, GripAction::Scale(_)) && is_flat
+                            || matches!(there, GripAction::Tilt(_)) && is_round;
                         assert_eq!(apart(&moved, &cut) < 1e-12, stays, "{text}: {there:?}");
                         moved.act(back, &camera, 2.0);
                         let off = apart(&moved, &cut);

@@ -7,7 +7,7 @@ use rara::Mode;
 use winit::event::{ElementState, MouseButton, MouseScrollDelta};
 use winit::keyboard::{Key, KeyCode, ModifiersState, NamedKey, PhysicalKey};
 
-use super::action::{Action, Edit, HeldAction, Which};
+use super::action::{Action, Edit, GripAction, Which};
 
 /// The text that `--help` prints and the key H shows.
 pub(super) const KEYS: &str = "\
@@ -100,7 +100,7 @@ impl Input {
         let repeats = action.moves()
             && !matches!(
                 action,
-                Action::Held(HeldAction::Toggle | HeldAction::Flip | HeldAction::Next)
+                Action::Held(GripAction::Toggle | GripAction::Flip | GripAction::Next)
             );
         (repeats || !repeat).then_some(action)
     }
@@ -122,9 +122,9 @@ impl Input {
         let shift = self.modifiers.shift_key();
         if down(MouseButton::Right) {
             let action = if shift {
-                HeldAction::Tilt(degrees)
+                GripAction::Tilt(degrees)
             } else {
-                HeldAction::Drag(by)
+                GripAction::Drag(by)
             };
             return Some(Action::Held(action));
         }
@@ -143,7 +143,7 @@ impl Input {
         if self.modifiers.shift_key() {
             // Some systems turn the wheel with Shift into one that goes sideways.
             let steps = if lines == 0.0 { across } else { lines };
-            return Action::Held(HeldAction::Scale(LARGER.powf(steps)));
+            return Action::Held(GripAction::Scale(LARGER.powf(steps)));
         }
         Action::Zoom(lines)
     }
@@ -177,7 +177,7 @@ fn named(key: NamedKey, shift: bool) -> Option<Action> {
     let arrow = |x: f64, y: f64| {
         let degrees = ARROW * DVec2::new(x, y);
         if shift {
-            Action::Held(HeldAction::Tilt(degrees))
+            Action::Held(GripAction::Tilt(degrees))
         } else {
             Action::Turn(degrees)
         }
@@ -188,8 +188,8 @@ fn named(key: NamedKey, shift: bool) -> Option<Action> {
         NamedKey::ArrowRight => arrow(1.0, 0.0),
         NamedKey::ArrowUp => arrow(0.0, -1.0),
         NamedKey::ArrowDown => arrow(0.0, 1.0),
-        NamedKey::PageUp => Action::Held(HeldAction::Step(step)),
-        NamedKey::PageDown => Action::Held(HeldAction::Step(-step)),
+        NamedKey::PageUp => Action::Held(GripAction::Step(step)),
+        NamedKey::PageDown => Action::Held(GripAction::Step(-step)),
         NamedKey::Tab => Action::OtherWalk,
         NamedKey::F12 => Action::Screenshot(None),
         NamedKey::Escape => Action::Quit,
@@ -222,14 +222,14 @@ fn letter(text: &str) -> Option<Action> {
         "3" => Action::Mode(Mode::Exact),
         "+" | "=" => Action::Zoom(1.0),
         "-" => Action::Zoom(-1.0),
-        "p" => held(HeldAction::Toggle),
-        "i" => held(HeldAction::Flip),
-        "g" => held(HeldAction::Next),
-        "x" => held(HeldAction::Align(DVec3::X)),
-        "y" => held(HeldAction::Align(DVec3::Y)),
-        "z" => held(HeldAction::Align(DVec3::Z)),
-        "j" => held(HeldAction::Scale(1.0 / LARGER)),
-        "k" => held(HeldAction::Scale(LARGER)),
+        "p" => held(GripAction::Toggle),
+        "i" => held(GripAction::Flip),
+        "g" => held(GripAction::Next),
+        "x" => held(GripAction::Align(DVec3::X)),
+        "y" => held(GripAction::Align(DVec3::Y)),
+        "z" => held(GripAction::Align(DVec3::Z)),
+        "j" => held(GripAction::Scale(1.0 / LARGER)),
+        "k" => held(GripAction::Scale(LARGER)),
         "b" => Action::Outline(None),
         "m" => Action::Numbers(None),
         "l" => Action::Edit(Edit::Next),
@@ -272,17 +272,17 @@ mod tests {
         );
         input.button(MouseButton::Left, Released);
         input.button(MouseButton::Right, Pressed);
-        let tilt = Action::Held(HeldAction::Tilt(at(0.0, 1.0)));
+        let tilt = Action::Held(GripAction::Tilt(at(0.0, 1.0)));
         assert_eq!(input.cursor(at(31.0, 7.0), 360), Some(tilt));
         input.modifiers(ModifiersState::empty());
-        let drag = Action::Held(HeldAction::Drag(at(0.0, -3.0)));
+        let drag = Action::Held(GripAction::Drag(at(0.0, -3.0)));
         assert_eq!(input.cursor(at(31.0, 4.0), 360), Some(drag));
     }
 
     #[test]
     fn switches_do_not_repeat_but_moves_do() {
         let mut input = Input::default();
-        let toggle = Some(Action::Held(HeldAction::Toggle));
+        let toggle = Some(Action::Held(GripAction::Toggle));
         assert_eq!(press(&mut input, "p", false), toggle);
         assert_eq!(press(&mut input, "P", true), None);
         assert_eq!(press(&mut input, "c", true), None);
@@ -298,7 +298,7 @@ mod tests {
     fn shift_takes_the_arrows_to_the_plane() {
         let turn = named(NamedKey::ArrowLeft, false);
         assert_eq!(turn, Some(Action::Turn(DVec2::new(-5.0, 0.0))));
-        let tilt = HeldAction::Tilt(DVec2::new(-5.0, 0.0));
+        let tilt = GripAction::Tilt(DVec2::new(-5.0, 0.0));
         assert_eq!(named(NamedKey::ArrowLeft, true), Some(Action::Held(tilt)));
     }
 
@@ -308,7 +308,7 @@ mod tests {
         let up = MouseScrollDelta::LineDelta(0.0, 2.0);
         assert_eq!(input.wheel(up), Action::Zoom(2.0));
         input.modifiers(ModifiersState::SHIFT);
-        let larger = Action::Held(HeldAction::Scale(LARGER * LARGER));
+        let larger = Action::Held(GripAction::Scale(LARGER * LARGER));
         assert_eq!(input.wheel(up), larger);
         assert_eq!(input.wheel(MouseScrollDelta::LineDelta(2.0, 0.0)), larger);
     }

@@ -102,7 +102,7 @@ pub(super) fn note(layers: &[NamedLayer], section: &[Expression]) -> Option<Stri
 #[cfg(test)]
 mod tests {
     use crate::scenes::LoadedLayer;
-    use crate::view::action::{Edit, HeldAction, Which};
+    use crate::view::action::{Edit, GripAction, Which};
     use crate::view::cut::Cut;
     use crate::view::layers::Clips;
     use crate::view::layers::tests::{camera, layer};
@@ -132,7 +132,7 @@ mod tests {
             assert!(clips.flags().is_empty(), "{listed}");
             clips.edit(&Edit::Next).unwrap();
             clips.act(
-                HeldAction::Set("sphere:0,0,0,2".parse().unwrap()),
+                GripAction::Set("sphere:0,0,0,2".parse().unwrap()),
                 &camera(),
                 1.0,
             );
@@ -174,11 +174,11 @@ mod tests {
         assert!(clips.note().is_none());
         // One of the clips is changed, and then both are the same.
         clips.edit(&Edit::Next).unwrap();
-        clips.act(HeldAction::On(false), &camera(), 1.0);
+        clips.act(GripAction::On(false), &camera(), 1.0);
         assert_eq!(clips.flags(), ["--hide=part"]);
         assert!(clips.note().is_some());
         clips.edit(&Edit::Next).unwrap();
-        clips.act(HeldAction::On(false), &camera(), 1.0);
+        clips.act(GripAction::On(false), &camera(), 1.0);
         assert_eq!(clips.flags(), ["--hide=part", "--layer-clip=part=whole"]);
         assert!(clips.note().is_none());
     }

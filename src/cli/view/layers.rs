@@ -3,13 +3,13 @@
 use glam::DVec3;
 use rara::{Camera, ClipOp, Windowed};
 
-use super::action::{Edit, HeldAction, Which};
+use super::action::{Edit, GripAction, Which};
 use super::cut::Cut;
 use super::layer_flags;
 use super::shots::quoted;
 use crate::failure::Failure;
 use crate::scene_file::LayerClip;
-use crate::scenes::{Listed, LoadedLayer};
+use crate::scenes::{ListedState, LoadedLayer};
 use rara::clip::Expression;
 
 /// The frame's clip and the layers.
@@ -37,7 +37,7 @@ pub(super) struct NamedLayer {
     /// Their own clip; one that is off leaves them whole. `None` where the frame's holds.
     own: Option<Cut>,
     /// What is listed of each of them, with clips as they can be edited.
-    pub(super) listed: Vec<Listed>,
+    pub(super) listed: Vec<ListedState>,
 }
 
 impl NamedLayer {
@@ -56,7 +56,7 @@ impl Clips {
                 let facts = |l: &LoadedLayer| (l.name.clone(), l.state.visible, l.clip.clone());
                 facts(first) == facts(layer)
             };
-            let listed = Listed {
+            let listed = ListedState {
                 visible: layer.listed.visible,
                 clip: layer
                     .listed
@@ -141,7 +141,7 @@ impl Clips {
 
     /// Does what is asked of the held shape. What changes the clip of a layer without one gives it one, whose only shape is a
     /// plane through the middle of the scene.
-    pub(super) fn act(&mut self, action: HeldAction, camera: &Camera, radius: f64) {
+    pub(super) fn act(&mut self, action: GripAction, camera: &Camera, radius: f64) {
         let cut = match self.edited {
             None => {
                 self.changed |= self.frame.has_section();
@@ -149,7 +149,7 @@ impl Clips {
             }
             Some(layer) => {
                 let own = &mut self.layers[layer].own;
-                if own.is_none() && action == HeldAction::Next {
+                if own.is_none() && action == GripAction::Next {
                     return;
                 }
                 self.changed = true;
@@ -328,7 +328,7 @@ pub(super) mod tests {
             clips.words().unwrap(),
             "clip of a b: plane at 0.0000, without skin"
         );
-        clips.act(HeldAction::Flip, &camera(), 1.0);
+        clips.act(GripAction::Flip, &camera(), 1.0);
         assert_eq!(
             clips.flags(),
             [
@@ -364,14 +364,14 @@ pub(super) mod tests {
         let mut clips = clips(&[layer("skin", true, None), layer("bone", true, None)]);
         for words in ["clip of skin: as the frame", "clip of bone: as the frame"] {
             clips.edit(&Edit::Next).unwrap();
-            clips.act(HeldAction::Next, &camera(), 1.0);
+            clips.act(GripAction::Next, &camera(), 1.0);
             assert_eq!(clips.words().unwrap(), words);
         }
         assert!(clips.flags().is_empty() && clips.in_force().count() == 1);
-        clips.act(HeldAction::Toggle, &camera(), 1.0);
+        clips.act(GripAction::Toggle, &camera(), 1.0);
         assert_eq!(clips.words().unwrap(), "clip of bone: plane at 0.0000");
         assert_eq!(clips.in_force().count(), 2);
-        clips.act(HeldAction::On(false), &camera(), 1.0);
+        clips.act(GripAction::On(false), &camera(), 1.0);
         assert_eq!(clips.flags(), ["--layer-clip=bone=whole"]);
         let selected = clips.clone().typed(&[("--select", "bone=label in 3")]);
         assert_eq!(

@@ -20,18 +20,18 @@ use crate::framing::Visible;
 use crate::lens::{Depths, Lens};
 use crate::output::counted;
 use crate::reading::{Reading, Watch};
-use crate::scenes::{self, Loaded};
-use crate::views::Framed;
+use crate::scenes::{self, SceneLayers};
+use crate::views::Framing;
 use crate::{training, values};
 
 /// A scene that has been read, and how it is looked at.
-pub(super) struct Fresh {
-    pub(super) loaded: Loaded,
+pub(super) struct LoadedWindow {
+    pub(super) loaded: SceneLayers,
     pub(super) scenery: Scenery,
 }
 
 /// How a scene is read.
-pub(super) type Load = Box<dyn FnOnce(Watch<'_>) -> Result<Fresh, Failure> + Send>;
+pub(super) type Load = Box<dyn FnOnce(Watch<'_>) -> Result<LoadedWindow, Failure> + Send>;
 
 /// How often a bar moves.
 pub(super) const TICK: Duration = Duration::from_millis(100);
@@ -51,10 +51,10 @@ struct Now {
     share: Option<f64>,
 }
 
-impl Fresh {
+impl LoadedWindow {
     /// A scene as it is looked at first. `typed` are the flags that made its layers.
     pub(super) fn new(
-        loaded: Loaded,
+        loaded: SceneLayers,
         begin: Begin,
         up: Option<DVec3>,
         typed: &[(&str, &str)],
@@ -78,7 +78,7 @@ impl Fresh {
         Box::new(move |watch| {
             let loaded = scenes::load_files(&files, watch)?;
             let (up, note) = training::up_of(up, &files);
-            let framed = Views::Framed(Framed {
+            let framed = Views::Framed(Framing {
                 up,
                 lens: Lens::Perspective(FOV_Y),
                 size,
@@ -97,7 +97,7 @@ impl Loading {
     /// waits for it any more.
     pub(super) fn begin(
         load: Load,
-        done: impl FnOnce(Result<Fresh, Failure>) + Send + 'static,
+        done: impl FnOnce(Result<LoadedWindow, Failure>) + Send + 'static,
     ) -> Result<Self, Failure> {
         let now = Arc::new(Mutex::new(Now::default()));
         let told = now.clone();
@@ -125,7 +125,7 @@ impl Loading {
     }
 
     /// The upload, which follows the reading and which the window waits for.
-    pub(super) fn uploading(&mut self, loaded: &Loaded) {
+    pub(super) fn uploading(&mut self, loaded: &SceneLayers) {
         let count: usize = loaded.layers.iter().map(|l| l.gaussians.len()).sum();
         *self.now.lock().unwrap_or_else(PoisonError::into_inner) = Now {
             what: format!("uploading {}", counted(count as u64, "Gaussian")),
@@ -197,7 +197,7 @@ mod tests {
     fn what_cannot_be_read_is_said_as_on_the_command_line() {
         let missing = PathBuf::from("/nowhere/scene.ply");
         let (sent, got) = mpsc::channel();
-        let load = Fresh::of_files(vec![missing.clone()], None, (64, 64));
+        let load = LoadedWindow::of_files(vec![missing.clone()], None, (64, 64));
         let loading = Loading::begin(load, move |outcome| sent.send(outcome).unwrap()).unwrap();
         let failure = got.recv().unwrap().err().expect("it is not there");
         let typed = scenes::load_files(&[missing], &mut |_| ()).err();

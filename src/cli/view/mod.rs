@@ -34,7 +34,7 @@ use rara::{Camera, ClipOp, Scene};
 
 use self::cut::Cut;
 use self::input::KEYS;
-use self::loading::Fresh;
+use self::loading::LoadedWindow;
 use self::scenery::Manner;
 use self::shots::Shots;
 use super::camera::{CameraArgs, Views};
@@ -158,7 +158,7 @@ impl View {
                 load: Box::new(move |watch| {
                     let mut loaded = scenes.load_watched(watch)?;
                     begin.regions().settle(&mut loaded)?;
-                    Fresh::new(loaded, begin, up, &scenes.typed())
+                    LoadedWindow::new(loaded, begin, up, &scenes.typed())
                 }),
                 script,
                 follow,

@@ -5,9 +5,9 @@ use std::time::Instant;
 use rara::Error;
 use rara::clip::NamedClip;
 
-use super::app::Sent;
-use super::dropped::Dropped;
-use super::loading::{Fresh, Load, Loading, TICK};
+use super::app::AppEvent;
+use super::dropped::DroppedFile;
+use super::loading::{Load, LoadedWindow, Loading, TICK};
 use super::stage::Viewer;
 use crate::clip::are_alternatives;
 use crate::failure::Failure;
@@ -18,7 +18,7 @@ impl Viewer {
     pub(super) fn load(&mut self, load: Load) -> Result<(), Failure> {
         let proxy = self.proxy.clone();
         // Where the event loop has ended nobody waits for the scene.
-        let done = move |outcome| drop(proxy.send_event(Sent::Read(Box::new(outcome))));
+        let done = move |outcome| drop(proxy.send_event(AppEvent::Read(Box::new(outcome))));
         self.loading = Some(Loading::begin(load, done)?);
         self.dirty = true;
         Ok(())
@@ -41,8 +41,8 @@ impl Viewer {
             self.dirty |= self.overlay.hush();
         }
         for file in files {
-            match Dropped::of(&file) {
-                Ok(Dropped::Scene) => scenes.push(file),
+            match DroppedFile::of(&file) {
+                Ok(DroppedFile::Scene) => scenes.push(file),
                 Ok(other) => self.beside.push(other),
                 Err(failure) => self.warn(&failure),
             }
@@ -51,12 +51,12 @@ impl Viewer {
             self.take_up_what_is_beside();
             return Ok(());
         }
-        let load = Fresh::of_files(scenes, self.manner.up, self.picture_size());
+        let load = LoadedWindow::of_files(scenes, self.manner.up, self.picture_size());
         self.load(load)
     }
 
     /// Shows a scene that has been read. Only the first one has to be readable.
-    pub(super) fn arrive(&mut self, outcome: Result<Fresh, Failure>) -> Result<(), Failure> {
+    pub(super) fn arrive(&mut self, outcome: Result<LoadedWindow, Failure>) -> Result<(), Failure> {
         let is_first = !self.began;
         let shown = outcome.and_then(|fresh| self.show(fresh));
         self.loading = None;
@@ -73,7 +73,7 @@ impl Viewer {
         Ok(())
     }
 
-    fn show(&mut self, fresh: Fresh) -> Result<(), Failure> {
+    fn show(&mut self, fresh: LoadedWindow) -> Result<(), Failure> {
         if let Some(loading) = &mut self.loading {
             loading.uploading(&fresh.loaded);
             // The window does nothing else meanwhile, so that it says so before.
@@ -150,9 +150,9 @@ impl Viewer {
                 continue;
             }
             match dropped {
-                Dropped::Scene => {}
-                Dropped::Clip(clips) => self.take_up(clips),
-                Dropped::Cameras(cameras) => {
+                DroppedFile::Scene => {}
+                DroppedFile::Clip(clips) => self.take_up(clips),
+                DroppedFile::Cameras(cameras) => {
                     let count = cameras.len();
                     // What is up is what is up in the camera's own picture.
                     let up = |camera: rara::Camera| (camera, -camera.rotation.row(1));

@@ -48,7 +48,7 @@ pub(super) struct Content {
 }
 
 /// What the overlay says of the picture.
-pub(super) struct Seen<'a> {
+pub(super) struct OverlayScene<'a> {
     /// None without a scene.
     pub(super) clips: Option<&'a Clips>,
     pub(super) mode: Mode,
@@ -135,12 +135,12 @@ impl Overlay {
     }
 
     /// True when the window does not show what it should.
-    pub(super) fn is_old(&self, seen: &Seen<'_>) -> bool {
+    pub(super) fn is_old(&self, seen: &OverlayScene<'_>) -> bool {
         self.shown.as_ref() != Some(&self.content(seen))
     }
 
     /// What the window should show.
-    pub(super) fn content(&self, seen: &Seen<'_>) -> Content {
+    pub(super) fn content(&self, seen: &OverlayScene<'_>) -> Content {
         Content {
             size: seen.size,
             of: Type::new(seen.scale_factor),
@@ -251,8 +251,8 @@ mod tests {
         Clips::new(Cut::new(shapes, ClipOp::And, DVec3::ZERO), &[], DVec3::ZERO)
     }
 
-    fn seen<'a>(clips: &'a Clips, size: (u32, u32)) -> Seen<'a> {
-        Seen {
+    fn seen<'a>(clips: &'a Clips, size: (u32, u32)) -> OverlayScene<'a> {
+        OverlayScene {
             clips: Some(clips),
             mode: Mode::Exact,
             stats: None,
@@ -349,7 +349,7 @@ mod tests {
             let mut overlay = Overlay::new(true);
             overlay.set_keys(Some(true));
             overlay.warn("what is wrong ".repeat(20));
-            let content = overlay.content(&Seen {
+            let content = overlay.content(&OverlayScene {
                 progress: Some(("reading a.ply".into(), Progress::Share(0.5))),
                 ..seen(&clips, size)
             });

@@ -12,8 +12,8 @@ use winit::event_loop::EventLoopProxy;
 use winit::window::Window;
 
 use super::action::Action;
-use super::app::Sent;
-use super::dropped::Dropped;
+use super::app::AppEvent;
+use super::dropped::DroppedFile;
 use super::flags;
 use super::input::KEYS;
 use super::loading::Loading;
@@ -30,7 +30,7 @@ use crate::output::say;
 pub(super) struct Viewer {
     pub(super) windowed: Windowed,
     pub(super) window: Arc<Window>,
-    pub(super) proxy: EventLoopProxy<Sent>,
+    pub(super) proxy: EventLoopProxy<AppEvent>,
     pub(super) manner: Manner,
     pub(super) scenery: Scenery,
     /// True where there is a scene.
@@ -41,7 +41,7 @@ pub(super) struct Viewer {
     /// Files that are yet to be opened.
     pub(super) dropped: Vec<PathBuf>,
     /// What was dropped with the scene that is being read.
-    pub(super) beside: Vec<Dropped>,
+    pub(super) beside: Vec<DroppedFile>,
     /// Clips of a file, of which one is meant, and the number of the one that is shown.
     pub(super) alternatives: (Vec<NamedClip>, usize),
     /// How often something has failed that the window outlives.
@@ -80,7 +80,7 @@ impl Viewer {
     pub(super) fn new(
         windowed: Windowed,
         window: Arc<Window>,
-        proxy: EventLoopProxy<Sent>,
+        proxy: EventLoopProxy<AppEvent>,
         manner: Manner,
     ) -> rara::Result<Self> {
         let scenery = Scenery::nothing(manner.up.unwrap_or(UP))?;

@@ -176,7 +176,7 @@ pub unsafe extern "C" fn rara_device_adopt(
                 .shape(shape(&desc)?)
                 .debug_utils(desc.debug_utils != 0)
                 .pipeline_cache(desc.pipeline_cache)
-                .memory(Lender::of(&desc)?.map(|lender| Arc::new(lender) as _));
+                .memory(Lender::from_desc(&desc)?.map(|lender| Arc::new(lender) as _));
             let release = Arc::new(Release {
                 release: desc.release,
                 user: desc.release_user,

@@ -15,9 +15,9 @@ use crate::settings::{self, RaraSettings};
 /// A frame that rara_renderer_configure has made, rara_renderer_prepare records and rara_renderer_draw draws, whatever is
 /// configured after it. It keeps the memory that it is recorded with: destroy it after its last draw. One thread at a time
 /// uses it.
-pub struct RaraFrame(Frame);
+pub struct RaraFrame(FrameState);
 
-enum Frame {
+enum FrameState {
     Configured(ConfiguredFrame),
     Prepared(PreparedFrame),
     /// Its preparation was refused.
@@ -28,8 +28,8 @@ impl RaraFrame {
     /// The frame, if it is prepared, for a draw.
     pub(crate) fn prepared(&self) -> Result<&PreparedFrame> {
         match &self.0 {
-            Frame::Prepared(frame) => Ok(frame),
-            Frame::Configured(_) | Frame::Refused => {
+            FrameState::Prepared(frame) => Ok(frame),
+            FrameState::Configured(_) | FrameState::Refused => {
                 invalid("frame was not prepared: call rara_renderer_prepare before")
             }
         }
@@ -60,7 +60,7 @@ pub unsafe extern "C" fn rara_renderer_configure(
             let settings = settings::settings(settings)?;
             let renderer = &mut renderer.0;
             let frame = renderer.configure(&scene.buffers, &camera, &clip, &settings)?;
-            Ok(RaraFrame(Frame::Configured(frame)))
+            Ok(RaraFrame(FrameState::Configured(frame)))
         })
     })
 }
@@ -95,8 +95,8 @@ pub unsafe extern "C" fn rara_renderer_prepare(
             false => Some(depth::depth_image(depth)?),
         };
         let cmd = recording(cmd)?;
-        let configured = match std::mem::replace(&mut frame.0, Frame::Refused) {
-            Frame::Configured(configured) => configured,
+        let configured = match std::mem::replace(&mut frame.0, FrameState::Refused) {
+            FrameState::Configured(configured) => configured,
             other => {
                 frame.0 = other;
                 return invalid(
@@ -107,7 +107,7 @@ pub unsafe extern "C" fn rara_renderer_prepare(
         let prepared = renderer
             .0
             .prepare(cmd, &scene.buffers, depth.as_ref(), configured)?;
-        frame.0 = Frame::Prepared(prepared);
+        frame.0 = FrameState::Prepared(prepared);
         Ok(())
     })
 }

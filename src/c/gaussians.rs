@@ -6,7 +6,7 @@ use rara::scene::{Bounds, LoadReport, Property};
 
 use crate::boundary::{RaraResult, guard, invalid, versioned, write};
 use crate::handles::{alive, alone, destroy};
-use crate::numbering::Part;
+use crate::numbering::SetPart;
 
 /// A scene in the host's memory. It may be destroyed once it is on the device. Several threads may read it at once.
 pub struct RaraGaussians {
@@ -16,7 +16,7 @@ pub struct RaraGaussians {
     /// Numbers that each of them has beside what it is drawn with, for selections.
     pub(crate) properties: Vec<Property>,
     /// Where selections have divided a set, which part of it they are.
-    pub(crate) part: Option<Part>,
+    pub(crate) part: Option<SetPart>,
 }
 
 impl From<Gaussians> for RaraGaussians {

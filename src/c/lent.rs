@@ -81,7 +81,7 @@ unsafe impl Sync for Lender {}
 
 impl Lender {
     /// The functions of a description, if it has any.
-    pub(crate) fn of(desc: &RaraAdoptDesc) -> rara::Result<Option<Self>> {
+    pub(crate) fn from_desc(desc: &RaraAdoptDesc) -> rara::Result<Option<Self>> {
         match (desc.allocate, desc.free) {
             (None, None) => Ok(None),
             (Some(allocate), Some(free)) => Ok(Some(Self {

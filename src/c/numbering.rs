@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 /// Of Gaussians that are a part of a set: which set it is, and their numbers in it, which ascend.
 #[derive(Clone)]
-pub(crate) struct Part {
+pub(crate) struct SetPart {
     /// How many Gaussians the whole set has. Parts of one set share it, and thereby are known.
     pub(crate) set: Arc<usize>,
     pub(crate) numbers: Vec<u32>,
@@ -18,7 +18,7 @@ pub(crate) type Numbers<'a> = Option<(u32, Cow<'a, [u32]>)>;
 /// Numbers the layers of a scene, of each of which is known how many Gaussians it has and of what they are a part. Sets follow
 /// one another in the order of their first layers. Where parts of a set are not in the scene the others close up, and a part
 /// that is there again begins the set anew.
-pub(crate) fn numbers<'a>(layers: &[(usize, Option<&'a Part>)]) -> Vec<Numbers<'a>> {
+pub(crate) fn numbers<'a>(layers: &[(usize, Option<&'a SetPart>)]) -> Vec<Numbers<'a>> {
     let mut numbered: Vec<Numbers<'a>> = vec![None; layers.len()];
     if layers.iter().all(|(_, part)| part.is_none()) {
         return numbered;
@@ -48,7 +48,7 @@ pub(crate) fn numbers<'a>(layers: &[(usize, Option<&'a Part>)]) -> Vec<Numbers<'
                 }
             }
             Some(_) => {
-                let numbers = |(layer, part): (usize, &'a Part)| {
+                let numbers = |(layer, part): (usize, &'a SetPart)| {
                     part.numbers.iter().map(move |&number| (number, layer))
                 };
                 let mut all: Vec<_> = parts().flat_map(numbers).collect();
@@ -68,13 +68,13 @@ pub(crate) fn numbers<'a>(layers: &[(usize, Option<&'a Part>)]) -> Vec<Numbers<'
 }
 
 /// The layers of each set, of which one that is no part has one.
-fn sets(layers: &[(usize, Option<&Part>)]) -> Vec<Vec<usize>> {
+fn sets(layers: &[(usize, Option<&SetPart>)]) -> Vec<Vec<usize>> {
     let mut sets: Vec<Vec<usize>> = Vec::new();
     for (index, (_, part)) in layers.iter().enumerate() {
-        let of_part = |part: &Part| {
+        let of_part = |part: &SetPart| {
             sets.iter().rposition(|set: &Vec<usize>| {
                 let mut others = set.iter().filter_map(|&layer| layers[layer].1).peekable();
-                let is_same = |other: &&Part| Arc::ptr_eq(&other.set, &part.set);
+                let is_same = |other: &&SetPart| Arc::ptr_eq(&other.set, &part.set);
                 others.peek().is_some_and(is_same) && !others.any(|other| std::ptr::eq(other, part))
             })
         };
@@ -91,7 +91,7 @@ mod tests {
     use super::*;
 
     /// The numbers in the scene, layer by layer; the scene takes them.
-    fn found(layers: &[(usize, Option<&Part>)]) -> Vec<Vec<u32>> {
+    fn found(layers: &[(usize, Option<&SetPart>)]) -> Vec<Vec<u32>> {
         let mut before = 0;
         let mut found = Vec::new();
         for (&(count, _), numbers) in layers.iter().zip(numbers(layers)) {
@@ -112,7 +112,7 @@ mod tests {
     #[test]
     fn sets_are_numbered_one_after_the_other_whatever_of_them_is_there() {
         let set = Arc::new(5);
-        let part = |numbers: &[u32]| Part {
+        let part = |numbers: &[u32]| SetPart {
             set: set.clone(),
             numbers: numbers.into(),
         };
@@ -138,7 +138,7 @@ mod tests {
             [vec![0, 1], vec![3, 5], vec![2, 4], vec![], vec![6]]
         );
         // Another set of as many.
-        let other = Part {
+        let other = SetPart {
             set: Arc::new(5),
             numbers: vec![0, 1],
         };

@@ -9,7 +9,7 @@ use rara::{Error, Placement, Result};
 use crate::boundary::{RaraResult, guard, invalid, list};
 use crate::gaussians::RaraGaussians;
 use crate::handles::{alone, create};
-use crate::numbering::Part;
+use crate::numbering::SetPart;
 use crate::placement::RaraPlacement;
 use crate::text::text;
 
@@ -103,7 +103,7 @@ impl RaraGaussians {
                 }
             }
             let set = set.clone();
-            Some(Part { set, numbers })
+            Some(SetPart { set, numbers })
         };
         let properties = self.properties.iter_mut();
         let properties = properties

@@ -48,7 +48,7 @@ pub struct RaraSupport {
 versioned!(RaraSupport);
 
 impl RaraSupport {
-    fn of(support: &Support) -> Self {
+    fn from_support(support: &Support) -> Self {
         let mut extensions = [std::ptr::null(); RARA_MAX_EXTENSIONS];
         let names = support.extensions();
         for (to, name) in extensions.iter_mut().zip(&names) {
@@ -100,7 +100,8 @@ pub unsafe extern "C" fn rara_check(
 ) -> RaraResult {
     guard(|| {
         let instance = load_instance(get_instance_proc_addr, instance, physical_device)?;
-        let found = RaraSupport::of(&gpu::check(&instance, physical_device, api_version)?);
+        let found =
+            RaraSupport::from_support(&gpu::check(&instance, physical_device, api_version)?);
         write(support, support_size, &found, "support")
     })
 }
@@ -118,7 +119,7 @@ pub unsafe extern "C" fn rara_support_features(
     p_next: *mut c_void,
 ) -> RaraResult {
     guard(|| {
-        let default = RaraSupport::of(&Support::default());
+        let default = RaraSupport::from_support(&Support::default());
         let support = read(support, default, "support")?;
         support.support().set_features(p_next)
     })

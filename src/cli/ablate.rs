@@ -35,7 +35,7 @@ impl Ablate {
         let views = views.single("an ablation")?;
         let loaded = self.scenes.load()?;
         let scene = loaded.scene();
-        let camera = views.of(&scene)?.remove(0).camera;
+        let camera = views.views(&scene)?.remove(0).camera;
 
         process::make_drivers_folder();
         let mut headless = Headless::new(&self.common.device.meant())?;

@@ -16,7 +16,7 @@ pub(super) struct Axis {
 
 impl Axis {
     /// An axis by its letter or its name, each with a leading ! or without.
-    pub(super) fn of(typed: &str) -> Option<Self> {
+    pub(super) fn parse(typed: &str) -> Option<Self> {
         let (axis, sign) = match typed.strip_prefix('!') {
             Some(axis) => (axis, -1.0),
             None => (typed, 1.0),
@@ -43,15 +43,15 @@ mod tests {
     #[test]
     fn axes_have_two_names_and_two_sides() {
         for (one, other) in [("x", "sagittal"), ("y", "coronal"), ("z", "axial")] {
-            let [one, other] = [one, other].map(|name| Axis::of(name).expect("an axis"));
+            let [one, other] = [one, other].map(|name| Axis::parse(name).expect("an axis"));
             assert_eq!(
                 (one.along, one.forward, one.up),
                 (other.along, other.forward, other.up)
             );
-            let turned = Axis::of(&format!("!{}", one.name)).expect("its other side");
+            let turned = Axis::parse(&format!("!{}", one.name)).expect("its other side");
             assert_eq!((turned.along, turned.forward), (one.along, -one.forward));
             assert_eq!(one.forward.dot(one.up), 0.0);
         }
-        assert!(Axis::of("w").is_none() && Axis::of("!!x").is_none());
+        assert!(Axis::parse("w").is_none() && Axis::parse("!!x").is_none());
     }
 }

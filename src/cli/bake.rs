@@ -14,8 +14,8 @@ use super::antialiasing;
 use super::clip::{ClipArgs, Regions};
 use super::compare::Measures;
 use super::failure::Failure;
-use super::output::{self, Progress, counted, grouped, say};
-use super::residual::{Residual, View, residual};
+use super::output::{self, ProgressLine, counted, grouped, say};
+use super::residual::{Residual, ResidualView, residual};
 use super::scene_file::LayerEntry;
 use super::scenes::{SceneArgs, SceneLayers};
 use super::select::{self, LayerRemains};
@@ -88,7 +88,7 @@ pub(super) struct Bake {
 }
 
 #[derive(Debug, Serialize)]
-struct Document {
+struct BakeJson {
     mode: String,
     /// Gaussians of all scenes, and of all files that were written.
     gaussians: usize,
@@ -99,7 +99,7 @@ struct Document {
     baked: Option<Measures>,
     /// The same of a clip by centres.
     hard: Option<Measures>,
-    views: Vec<View>,
+    views: Vec<ResidualView>,
 }
 
 /// A file to be written: its layers' baked Gaussians.
@@ -133,7 +133,7 @@ impl Bake {
             .leave(self.leave);
         let mut counts = BakeCounts::default();
         let mut baked: Vec<Baked> = Vec::new();
-        let mut progress = Progress::new("baking");
+        let mut progress = ProgressLine::new("baking");
         let scene = loaded.scene();
         for (done, layer) in scene.layers().iter().enumerate() {
             progress.update(done as u64, scene.layers().len() as u64);
@@ -251,7 +251,7 @@ impl Bake {
             None => (None, None, Vec::new()),
         };
         if self.json {
-            return Ok(output::json(&Document {
+            return Ok(output::json(&BakeJson {
                 mode: name(self.mode),
                 gaussians,
                 written,

@@ -12,7 +12,7 @@ use super::camera::CameraArgs;
 use super::clip::ClipArgs;
 use super::demo::middle;
 use super::failure::Failure;
-use super::output::{self, Progress, say};
+use super::output::{self, ProgressLine, say};
 use super::process;
 use super::scenes::SceneArgs;
 use super::settings::{DeviceArgs, LookArgs};
@@ -75,7 +75,7 @@ impl Bench {
         let mut loaded = self.scenes.load()?;
         clip.settle(&mut loaded)?;
         let scene = loaded.scene();
-        let camera = views.of(&scene)?.remove(0).camera;
+        let camera = views.views(&scene)?.remove(0).camera;
         let clip = clip.clip(&scene)?;
         let clip = if clip.is_everything() {
             Clip::of([middle(&scene, &camera)?], ClipOp::And)
@@ -90,7 +90,7 @@ impl Bench {
         };
         process::make_drivers_folder();
         let mut headless = Headless::new(&self.device.meant())?;
-        let mut progress = Progress::new("measuring");
+        let mut progress = ProgressLine::new("measuring");
         let report = bench::bench(
             &mut headless,
             (&scene, &camera, &clip),

@@ -10,7 +10,7 @@ use super::failure::Failure;
 use super::json_kind::JsonKind;
 use super::lens::{Depths, Lens, Ortho, UP, ortho};
 use super::views::{Framing, picked};
-pub(super) use super::views::{View, Views};
+pub(super) use super::views::{NamedView, Views};
 use super::{aspect, output, training, values};
 use rara::camera_files;
 
@@ -210,7 +210,7 @@ impl CameraArgs {
         scenes: &[PathBuf],
         flag: &str,
         wanted: Option<&[String]>,
-    ) -> Result<Vec<View>, Failure> {
+    ) -> Result<Vec<NamedView>, Failure> {
         let is_placed = self.eye.or(self.target).or(self.up).is_some();
         if is_placed || self.ortho.is_some() || self.fov_y != FOV_Y {
             return Err(Failure::Usage(format!(
@@ -222,8 +222,8 @@ impl CameraArgs {
             .map_err(|error| JsonKind::Cameras.wanted(&path, error))?
             .into_iter()
             .enumerate();
-        let mut views: Vec<View> = loaded
-            .map(|(number, named)| View {
+        let mut views: Vec<NamedView> = loaded
+            .map(|(number, named)| NamedView {
                 number,
                 name: named.name,
                 camera: named.camera,
@@ -235,7 +235,7 @@ impl CameraArgs {
         }
         let depths = self.depths();
         for view in &mut views {
-            view.camera = depths.of(self.sized(view.camera)?)?;
+            view.camera = depths.camera(self.sized(view.camera)?)?;
         }
         Ok(views)
     }
@@ -258,15 +258,15 @@ impl CameraArgs {
         };
         if let (Some(eye), Some(target)) = (self.eye, self.target) {
             let camera = lens.look((eye, target), self.up.unwrap_or(UP), size)?;
-            return Ok(Views::Given(vec![View {
+            return Ok(Views::Given(vec![NamedView {
                 number: 0,
                 name: "camera".into(),
-                camera: depths.of(camera)?,
+                camera: depths.camera(camera)?,
             }]));
         }
         if let (Some(path), None) = (&self.camera, &self.view) {
-            let camera = depths.of(self.sized(only(path, scenes)?)?)?;
-            return Ok(Views::Given(vec![View {
+            let camera = depths.camera(self.sized(only(path, scenes)?)?)?;
+            return Ok(Views::Given(vec![NamedView {
                 number: 0,
                 name: path.display().to_string(),
                 camera,

@@ -76,11 +76,11 @@ impl Regions {
         self.all.is_empty()
     }
 
-    pub(super) fn of(&self, scene: &Scene<'_>) -> rara::Result<Vec<Expression>> {
+    pub(super) fn expressions(&self, scene: &Scene<'_>) -> rara::Result<Vec<Expression>> {
         let bounds = LazyCell::new(|| Bounds::of(scene.clone()));
         self.all
             .iter()
-            .map(|region| region.of(|| *bounds))
+            .map(|region| region.resolve(|| *bounds))
             .collect()
     }
 
@@ -97,7 +97,7 @@ impl Regions {
     }
 
     pub(super) fn clip(&self, scene: &Scene<'_>) -> rara::Result<Clip> {
-        Ok(joined(&self.of(scene)?, self.op))
+        Ok(joined(&self.expressions(scene)?, self.op))
     }
 
     /// Writes the clip to a file as one expression, and the layers' own clips, where that is wanted.
@@ -105,7 +105,7 @@ impl Regions {
         let Some(path) = &self.save else {
             return Ok(());
         };
-        let mut all = self.of(&loaded.scene())?;
+        let mut all = self.expressions(&loaded.scene())?;
         let clip = match (all.len(), self.op) {
             (1, _) => all.remove(0),
             (_, ClipOp::And) => Expression::All(all),
@@ -142,7 +142,7 @@ impl ClipArgs {
         for text in &self.clip_file {
             for NamedClip { clip, layer, .. } in from_file(text)? {
                 match layer {
-                    Some(layer) => layers.push((layer, LayerClip::of(clip))),
+                    Some(layer) => layers.push((layer, LayerClip::from_expression(clip))),
                     None => all.push(Region::Fixed(clip)),
                 }
             }

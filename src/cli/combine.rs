@@ -25,7 +25,7 @@ pub(super) struct Times {
 
 impl Times {
     /// All of these as one, each time combined by `join`.
-    fn of(all: impl Iterator<Item = Self>, join: fn(f64, f64) -> f64) -> Self {
+    fn join(all: impl Iterator<Item = Self>, join: fn(f64, f64) -> f64) -> Self {
         let joined = all.reduce(|a, b| Self {
             gpu_ms: a.gpu_ms.zip(b.gpu_ms).map(|(a, b)| join(a, b)),
             wall_ms: join(a.wall_ms, b.wall_ms),
@@ -38,7 +38,7 @@ impl Times {
 }
 
 impl FrameSummary {
-    pub(super) fn of(frames: &[FrameStats]) -> Self {
+    pub(super) fn from_frames(frames: &[FrameStats]) -> Self {
         let times = || {
             frames.iter().map(|frame| Times {
                 gpu_ms: frame.gpu_ms,
@@ -48,8 +48,8 @@ impl FrameSummary {
         Self {
             stats: combine(frames, Combine::Median),
             samples: frames.len(),
-            least: Times::of(times(), f64::min),
-            greatest: Times::of(times(), f64::max),
+            least: Times::join(times(), f64::min),
+            greatest: Times::join(times(), f64::max),
         }
     }
 
@@ -60,8 +60,8 @@ impl FrameSummary {
         Self {
             stats: combine(&stats, Combine::Sum),
             samples: parts.clone().map(|one| one.samples).sum(),
-            least: Times::of(parts.clone().map(|one| one.least), add),
-            greatest: Times::of(parts.map(|one| one.greatest), add),
+            least: Times::join(parts.clone().map(|one| one.least), add),
+            greatest: Times::join(parts.map(|one| one.greatest), add),
         }
     }
 
@@ -71,8 +71,8 @@ impl FrameSummary {
         Self {
             stats: combine(&stats, Combine::Median),
             samples: pictures.clone().map(|one| one.samples).sum(),
-            least: Times::of(pictures.clone().map(|one| one.least), f64::min),
-            greatest: Times::of(pictures.map(|one| one.greatest), f64::max),
+            least: Times::join(pictures.clone().map(|one| one.least), f64::min),
+            greatest: Times::join(pictures.map(|one| one.greatest), f64::max),
         }
     }
 }
@@ -85,7 +85,7 @@ pub(super) enum Combine {
 }
 
 impl Combine {
-    pub(super) fn of(self, mut values: Vec<f64>) -> f64 {
+    pub(super) fn apply(self, mut values: Vec<f64>) -> f64 {
         let count = values.len();
         match self {
             _ if count == 0 => 0.0,
@@ -110,7 +110,7 @@ fn middle(frames: &[FrameStats]) -> Counts {
 /// Each value's median, mean or sum over the frames. A stage that some of them did not run took 0 ms there. It is among the
 /// stages that were skipped, and has no time, where no frame ran it, and of medians where most frames did not.
 pub(super) fn combine(frames: &[FrameStats], how: Combine) -> FrameStats {
-    let value = |get: &dyn Fn(&FrameStats) -> f64| how.of(frames.iter().map(get).collect());
+    let value = |get: &dyn Fn(&FrameStats) -> f64| how.apply(frames.iter().map(get).collect());
     let count = |get: fn(&Counts) -> u32| value(&|frame| get(&frame.counts).into()).round() as u32;
     let ran = |name: &str| {
         let count = frames.iter().filter(|frame| ran(frame, name)).count();
@@ -208,8 +208,8 @@ mod tests {
         assert_eq!(sorting(&median), Some(3.0));
         assert!(median.skipped.is_empty());
         let parts = [
-            FrameSummary::of(&frames[..1]),
-            FrameSummary::of(&frames[1..]),
+            FrameSummary::from_frames(&frames[..1]),
+            FrameSummary::from_frames(&frames[1..]),
         ];
         let all = FrameSummary::all(parts.iter());
         assert_eq!((all.samples, all.stats.gpu_ms), (3, Some(5.25)));

@@ -105,7 +105,7 @@ struct Apart {
 }
 
 impl Apart {
-    fn of(a: &Picture, b: &Picture, background: [f32; 3]) -> rara::Result<Self> {
+    fn new(a: &Picture, b: &Picture, background: [f32; 3]) -> rara::Result<Self> {
         let alpha = |picture: &Picture| opaque(picture, |[.., a]| [a; 3]);
         let alpha = measure::differences(&alpha(a), &alpha(b))?;
         Ok(Self {
@@ -189,7 +189,7 @@ impl Compare {
             output::check_file(file)?;
         }
         let (a, b) = (Picture::load(&self.a)?, Picture::load(&self.b)?);
-        let apart = Apart::of(&a, &b, self.background)?;
+        let apart = Apart::new(&a, &b, self.background)?;
         if let Some(file) = &self.map {
             let [a, b] = [&a, &b].map(|picture| over(picture, self.background));
             map_with_scale(&a, &b)?.save(file)?;

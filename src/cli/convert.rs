@@ -60,7 +60,7 @@ pub(super) struct Convert {
 }
 
 #[derive(Debug, Serialize)]
-struct Document {
+struct ConvertJson {
     file: PathBuf,
     format: String,
     /// Gaussians that were read, and of these what was left out and why; the rest was written.
@@ -96,7 +96,7 @@ impl Convert {
         clip.settle(&mut loaded)?;
         let clip = clip.clip(&loaded.scene())?;
         antialiasing::check_alike(&loaded)?;
-        let mut document = Document {
+        let mut document = ConvertJson {
             file: self.output.clone(),
             format: format.to_string(),
             gaussians: 0,
@@ -161,7 +161,7 @@ impl Convert {
         &self,
         layer: LoadedLayer,
         clip: &Clip,
-        document: &mut Document,
+        document: &mut ConvertJson,
     ) -> Result<(Option<Numbers>, Part), Failure> {
         let LayerState {
             placement, opacity, ..
@@ -198,7 +198,7 @@ impl Convert {
         Ok((layer.numbers, part))
     }
 
-    fn print(&self, document: &Document) -> Result<(), Failure> {
+    fn print(&self, document: &ConvertJson) -> Result<(), Failure> {
         if self.json {
             return Ok(output::json(document)?);
         }

@@ -21,7 +21,7 @@ pub(super) struct Devices {
 }
 
 #[derive(Debug, Serialize)]
-struct Line {
+struct DeviceRow {
     number: usize,
     name: String,
     driver: String,
@@ -36,7 +36,7 @@ impl Devices {
         let list = list_devices()?
             .into_iter()
             .enumerate()
-            .map(|(number, device)| Line {
+            .map(|(number, device)| DeviceRow {
                 number,
                 kind: device.kind_name(),
                 name: device.name,
@@ -44,7 +44,7 @@ impl Devices {
                 supported: device.support.is_ok(),
                 problem: device.support.err(),
             });
-        let list: Vec<Line> = list.collect();
+        let list: Vec<DeviceRow> = list.collect();
         if self.json {
             return Ok(output::json(&list)?);
         }
@@ -53,7 +53,7 @@ impl Devices {
             return Err(Error::Device(message.into()).into());
         }
         let mut lines = Vec::new();
-        for Line {
+        for DeviceRow {
             number,
             name,
             driver,

@@ -20,7 +20,7 @@ impl Failure {
     }
 
     /// The same failure of a part of the work that has a name.
-    pub(super) fn of(self, name: &str) -> Self {
+    pub(super) fn in_job(self, name: &str) -> Self {
         match self {
             Self::Usage(message) => Self::Usage(format!("{name}: {message}")),
             Self::Work(error) if !matches!(error, rara::Error::Validation(_)) => {

@@ -28,7 +28,7 @@ pub(super) struct Info {
 }
 
 #[derive(Debug, Serialize)]
-struct Document {
+struct InfoJson {
     gaussians: usize,
     layers: Vec<LayerFacts>,
     sh_degree: u32,
@@ -89,7 +89,7 @@ struct LayerFacts {
 }
 
 impl LayerFacts {
-    fn of(layer: &LoadedLayer) -> Self {
+    fn from_layer(layer: &LoadedLayer) -> Self {
         Self {
             name: layer.name.clone(),
             format: layer
@@ -106,7 +106,7 @@ impl LayerFacts {
 }
 
 impl Spread {
-    fn of(values: impl Iterator<Item = f32>) -> Self {
+    fn from_values(values: impl Iterator<Item = f32>) -> Self {
         let mut values: Vec<f32> = values.collect();
         values.sort_unstable_by(f32::total_cmp);
         let at = |share: f64| {
@@ -133,7 +133,7 @@ impl Extent {
 }
 
 impl Facts {
-    fn of(gaussians: &Gaussians) -> Self {
+    fn from_gaussians(gaussians: &Gaussians) -> Self {
         let sorted = |index: usize| {
             let mut axes = gaussians.scales()[index].to_array();
             axes.sort_unstable_by(f32::total_cmp);
@@ -154,10 +154,10 @@ impl Facts {
                 centres.fold(-empty, DVec3::max),
             ),
             robust_bounds: Extent::new(robust.min, robust.max),
-            opacity: Spread::of(gaussians.opacities().iter().copied()),
-            scale: Spread::of(all.clone().map(|i| sorted(i)[2])),
-            elongation: Spread::of(all.clone().map(|i| ratio(sorted(i)[2], sorted(i)[1]))),
-            flatness: Spread::of(all.map(|i| ratio(sorted(i)[1], sorted(i)[0]))),
+            opacity: Spread::from_values(gaussians.opacities().iter().copied()),
+            scale: Spread::from_values(all.clone().map(|i| sorted(i)[2])),
+            elongation: Spread::from_values(all.clone().map(|i| ratio(sorted(i)[2], sorted(i)[1]))),
+            flatness: Spread::from_values(all.map(|i| ratio(sorted(i)[1], sorted(i)[0]))),
             cut: bands(gaussians),
         }
     }
@@ -199,24 +199,24 @@ impl Info {
         let mut loaded = self.scenes.load()?;
         let (repaired, dropped) = (loaded.repaired, loaded.dropped);
         let notes = std::mem::take(&mut loaded.notes);
-        let mut layers: Vec<_> = loaded.layers.iter().map(LayerFacts::of).collect();
+        let mut layers: Vec<_> = loaded.layers.iter().map(LayerFacts::from_layer).collect();
         if layers.len() > 1 {
             for (facts, layer) in layers.iter_mut().zip(&loaded.layers) {
                 let mut placed = layer.gaussians.clone();
                 // What single precision cannot hold there is in no picture either.
                 let _ = placed.place(&layer.state.placement);
-                facts.facts = Some(Facts::of(&placed));
+                facts.facts = Some(Facts::from_gaussians(&placed));
             }
         }
         let gaussians = &loaded.merged();
-        let document = Document {
+        let document = InfoJson {
             gaussians: gaussians.len(),
             layers,
             sh_degree: gaussians.sh_degree(),
             repaired,
             dropped,
             notes,
-            facts: Facts::of(gaussians),
+            facts: Facts::from_gaussians(gaussians),
         };
         if self.json {
             return Ok(output::json(&document)?);
@@ -226,7 +226,7 @@ impl Info {
 }
 
 /// The lines for people.
-fn table(document: &Document) -> Vec<String> {
+fn table(document: &InfoJson) -> Vec<String> {
     let mut lines = Vec::new();
     lines.push(format!(
         "gaussians      {}",
@@ -275,11 +275,11 @@ mod tests {
 
     #[test]
     fn spreads_pick_by_rank_and_take_no_values_at_all() {
-        let spread = Spread::of((0..=100).rev().map(|v| v as f32));
+        let spread = Spread::from_values((0..=100).rev().map(|v| v as f32));
         assert_eq!(
             [spread.min, spread.p1, spread.median, spread.p99, spread.max],
             [0.0, 1.0, 50.0, 99.0, 100.0]
         );
-        assert_eq!(Spread::of(std::iter::empty()).max, 0.0);
+        assert_eq!(Spread::from_values(std::iter::empty()).max, 0.0);
     }
 }

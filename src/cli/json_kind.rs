@@ -18,7 +18,7 @@ pub(super) enum JsonKind {
 
 impl JsonKind {
     /// What a document describes.
-    pub(super) fn of(document: &Value) -> Self {
+    pub(super) fn from_document(document: &Value) -> Self {
         let has = |value: &Value, keys: &[&str]| keys.iter().any(|key| value.get(key).is_some());
         match document {
             Value::Array(all) => match all.first() {
@@ -34,13 +34,13 @@ impl JsonKind {
     fn of_file(path: &Path) -> Option<Self> {
         let document = document(path)?;
         let first = document.get(0);
-        let is_sure = match Self::of(&document) {
+        let is_sure = match Self::from_document(&document) {
             Self::Scene => document.get("layers").is_some(),
             Self::Clips => first
                 .is_none_or(|first| first.get("clip").is_some() || first.get("normal").is_some()),
             Self::Cameras => true,
         };
-        is_sure.then(|| Self::of(&document))
+        is_sure.then(|| Self::from_document(&document))
     }
 
     fn named(self) -> &'static str {
@@ -100,7 +100,7 @@ mod tests {
             ("7", JsonKind::Scene),
         ] {
             let document = serde_json::from_str(text).expect("JSON");
-            assert_eq!(JsonKind::of(&document), is, "{text}");
+            assert_eq!(JsonKind::from_document(&document), is, "{text}");
         }
     }
 }

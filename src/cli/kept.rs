@@ -14,11 +14,11 @@ use super::session::Session;
 #[derive(Default)]
 pub(super) struct SessionCache {
     is_wanted: bool,
-    last: Option<(Place, SceneLayers)>,
+    last: Option<(ScenePlace, SceneLayers)>,
 }
 
 /// Where a scene is drawn.
-pub(super) struct Place {
+pub(super) struct ScenePlace {
     /// The flags of the scene and of its device.
     flags: String,
     /// The clips of its layers before a command changes them.
@@ -42,7 +42,7 @@ impl SessionCache {
         profile: &Profile,
         scenes: &SceneArgs,
         device: &impl Debug,
-    ) -> std::result::Result<(Place, SceneLayers), Failure> {
+    ) -> std::result::Result<(ScenePlace, SceneLayers), Failure> {
         let flags = format!("{scenes:?} {device:?}");
         if let Some((place, mut loaded)) = self.last.take() {
             if place.flags == flags {
@@ -54,7 +54,7 @@ impl SessionCache {
             place.close()?; // before the next scene needs the memory
         }
         let loaded = profile.span("load", || scenes.load())?;
-        let place = Place {
+        let place = ScenePlace {
             flags,
             clips: loaded
                 .layers
@@ -69,11 +69,11 @@ impl SessionCache {
     /// Keeps the scene for the next command, or closes its session.
     pub(super) fn keep(
         &mut self,
-        place: Place,
+        place: ScenePlace,
         loaded: SceneLayers,
         session: Session,
     ) -> Result<()> {
-        let place = Place {
+        let place = ScenePlace {
             session: Some(session),
             ..place
         };
@@ -90,7 +90,7 @@ impl SessionCache {
     }
 }
 
-impl Place {
+impl ScenePlace {
     /// The session that draws the scene.
     pub(super) fn open(
         &mut self,

@@ -109,7 +109,7 @@ pub(super) struct Depths {
 
 impl Depths {
     /// The camera with planes, and a near cut, at these depths, and at its own where none are given.
-    pub(super) fn of(self, camera: Camera) -> Result<Camera, Failure> {
+    pub(super) fn camera(self, camera: Camera) -> Result<Camera, Failure> {
         let camera = camera
             .clip_near(self.near.or(camera.clip_near))
             .clip_far(self.far.or(camera.clip_far))

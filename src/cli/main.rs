@@ -112,7 +112,7 @@ struct Cli {
 enum Command {
     Render(render::Render),
     #[cfg(feature = "view")]
-    View(view::View),
+    View(view::ViewCommand),
     Sweep(sweep::Sweep),
     Batch(batch::Batch),
     Ablate(ablate::Ablate),

@@ -12,7 +12,7 @@ use serde::Serialize;
 
 use super::values::STANDARD;
 
-pub(super) use super::progress::{Progress, Spinner};
+pub(super) use super::progress::{ProgressLine, Spinner};
 
 static QUIET: AtomicBool = AtomicBool::new(false);
 

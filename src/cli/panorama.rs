@@ -12,7 +12,7 @@ use clap::Args;
 use glam::{DMat3, DVec3};
 use rara::{Camera, Picture, Projection};
 
-use super::camera::View;
+use super::camera::NamedView;
 use super::failure::Failure;
 
 /// A picture of all directions.
@@ -95,11 +95,11 @@ impl Panorama {
     }
 
     /// The six views of a view's surroundings.
-    pub(super) fn faces(self, view: &View) -> Vec<View> {
+    pub(super) fn faces(self, view: &NamedView) -> Vec<NamedView> {
         let (half, margin) = self.half();
         let side = 2.0 * (half + margin);
         let axes = view.camera.rotation;
-        let face = |(name, own): &(&str, [DVec3; 3])| View {
+        let face = |(name, own): &(&str, [DVec3; 3])| NamedView {
             number: view.number,
             name: format!("{} {name}", view.name),
             camera: view
@@ -226,9 +226,9 @@ fn between(picture: &Picture, [x, y]: [f64; 2]) -> [f32; 4] {
 mod tests {
     use super::*;
 
-    fn view() -> View {
+    fn view() -> NamedView {
         let (eye, target) = (DVec3::new(1.0, 2.0, 3.0), DVec3::new(4.0, 0.0, 4.0));
-        View {
+        NamedView {
             number: 0,
             name: "v".into(),
             camera: Camera::look_at(eye, target, DVec3::NEG_Y, 50.0, (8, 8)).unwrap(),
@@ -294,7 +294,8 @@ mod tests {
                 .all(|one| one.abs() < 1e-12)
         );
         assert_eq!(faces[5].name, "v down");
-        let pixels = |face: &View| u64::from(face.camera.width) * u64::from(face.camera.height);
+        let pixels =
+            |face: &NamedView| u64::from(face.camera.width) * u64::from(face.camera.height);
         assert_eq!(
             panorama.kept_pixels(),
             faces.iter().map(pixels).sum::<u64>()

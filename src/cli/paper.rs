@@ -8,7 +8,7 @@ use rara_lab::cases::sources;
 use rara_lab::paper::{self, PaperOptions};
 
 use super::failure::Failure;
-use super::output::{self, Progress, say};
+use super::output::{self, ProgressLine, say};
 use super::process;
 use super::settings::DeviceArgs;
 
@@ -55,7 +55,7 @@ impl Paper {
         options.count = options.count.min(largest.unwrap_or(0).max(1));
         process::make_drivers_folder();
         let mut headless = Headless::new(&self.device.meant())?;
-        let mut progress = Progress::new("measuring");
+        let mut progress = ProgressLine::new("measuring");
         paper::run(&mut headless, sources, &options, &self.output, &mut |now| {
             let left = now
                 .seconds_left

@@ -70,12 +70,12 @@ fn hidden(template: &str, what: String) -> ProgressBar {
 }
 
 /// A bar on the terminal for work that takes longer than a moment; none elsewhere.
-pub(super) struct Progress {
+pub(super) struct ProgressLine {
     bar: ProgressBar,
     _sign: Sign,
 }
 
-impl Progress {
+impl ProgressLine {
     pub(super) fn new(what: impl Into<String>) -> Self {
         let bar = hidden("{spinner} {msg} {wide_bar} {percent:>3} %", what.into());
         // Without a length the bar would be full.

@@ -3,7 +3,7 @@
 use std::io::{self, Read};
 use std::path::Path;
 
-use super::output::{Progress, Spinner};
+use super::output::{ProgressLine, Spinner};
 use super::scene_file::LayerEntry;
 use super::{select, values};
 use rara::scene::{self, Property};
@@ -36,7 +36,7 @@ pub(super) fn read(
     tell(0, 0);
     let properties = select::properties(&entry.selected);
     if path != Path::new(values::STANDARD) {
-        let mut progress = Progress::new(format!("reading {}", path.display()));
+        let mut progress = ProgressLine::new(format!("reading {}", path.display()));
         return scene::load_with(path, &properties, &mut |done, total| {
             progress.update(done, total);
             tell(done, total);
@@ -51,7 +51,7 @@ pub(super) fn read(
             .read_to_end(&mut bytes)
             .map_err(rara::Error::io(name))?;
     }
-    let mut progress = Progress::new("reading standard input");
+    let mut progress = ProgressLine::new("reading standard input");
     scene::load_from_with(
         io::Cursor::new(bytes),
         name,

@@ -58,7 +58,7 @@ impl<T> Region<T> {
 
 impl<T: FromStr<Err = Error> + Clone> Region<T> {
     /// What it is in a scene, whose bounds are asked for if it lies at shares of them: those of a large one take a while.
-    pub(super) fn of(&self, bounds: impl FnOnce() -> Bounds) -> Result<T> {
+    pub(super) fn resolve(&self, bounds: impl FnOnce() -> Bounds) -> Result<T> {
         match self {
             Self::Fixed(one) => Ok(one.clone()),
             Self::Relative(text, _) => fixed(text, &bounds())?.parse(),
@@ -85,7 +85,7 @@ fn fixed(text: &str, bounds: &Bounds) -> Result<String> {
         let typed = format!("{kind}{}", &rest[..end]);
         let wrong = |what: &str| Error::Invalid(format!("'{typed}': {what}"));
         // The other side is the outside of the shape.
-        let axis = Axis::of(name.trim()).filter(|_| !name.contains('!'));
+        let axis = Axis::parse(name.trim()).filter(|_| !name.contains('!'));
         let axis = axis.ok_or_else(|| {
             wrong("expected one of the axes x, y, z, sagittal, coronal and axial")
         })?;
@@ -156,7 +156,7 @@ mod tests {
             let region: Region = typed.parse().expect(typed);
             assert!(matches!(region, Region::Relative(..)), "{typed}");
             let meant: Expression = means.parse().expect(means);
-            assert_eq!(region.of(bounds).expect(typed), meant, "{typed}");
+            assert_eq!(region.resolve(bounds).expect(typed), meant, "{typed}");
         }
         let typed = "all(plane:1,0,0,3, sphere:0,0,0,1)";
         let region: Region = typed.parse().expect(typed);

@@ -6,7 +6,7 @@ use clap::Args;
 use glam::DVec3;
 use rara::{Aov, Camera, Clip, Scene, Settings, Show};
 
-use super::camera::{View, Views};
+use super::camera::{NamedView, Views};
 use super::clip::Regions;
 use super::failure::Failure;
 use super::frame::FrameArgs;
@@ -20,7 +20,7 @@ use super::pictures::{
     self, Destination, Order, PictureArgs, PictureJob, Pixels, Plan, RenderedPicture,
 };
 use super::profile::{Profile, ProfileArgs};
-use super::report::{Answer, Frame, Report};
+use super::report::{Answer, FrameRecord, RenderReport};
 use super::save_camera::SaveCameraArgs;
 use super::scenes::SceneArgs;
 use super::section::{Section, SectionArgs, Sections};
@@ -97,7 +97,7 @@ enum Pictures {
 }
 
 struct Shot {
-    view: View,
+    view: NamedView,
     clip: Clip,
     section: Option<Section>,
 }
@@ -125,7 +125,7 @@ impl Pictures {
     }
 
     /// The pictures, once the scene is known.
-    fn of(self, scene: &Scene<'_>) -> Result<Vec<Shot>, Failure> {
+    fn shots(self, scene: &Scene<'_>) -> Result<Vec<Shot>, Failure> {
         Ok(match self {
             Self::Views(views, regions) => {
                 let clip = regions.clip(scene)?;
@@ -138,7 +138,7 @@ impl Pictures {
                 views.map(shot).collect()
             }
             Self::Sections(sections) => {
-                let sections = sections.of(scene)?.into_iter();
+                let sections = sections.sections(scene)?.into_iter();
                 let shot = |one: Section| Shot {
                     clip: one.clip(),
                     view: one.view.clone(),
@@ -270,7 +270,7 @@ impl Render {
         let (mut place, mut loaded) = kept.load(profile, &self.scenes, &session_of)?;
         pictures.regions().settle(&mut loaded)?;
         let scene = loaded.scene();
-        let mut shots = pictures.of(&scene)?;
+        let mut shots = pictures.shots(&scene)?;
         if let (Some(_), Some(up)) = (&panorama, self.horizon()) {
             for Shot { view, .. } in &mut shots {
                 view.camera = panorama::levelled(view.camera, up);
@@ -323,7 +323,7 @@ impl Render {
             };
             let plane = shot.cut().map(|cut| &cut.plane);
             let mut drawn =
-                RenderedPicture::from(Frame::new(view, file.as_deref(), plane, measured));
+                RenderedPicture::from(FrameRecord::new(view, file.as_deref(), plane, measured));
             if file.is_some() {
                 drawn.picture = Some(match shot.cut().filter(|_| slicer.has_cues()) {
                     None => Pixels::Stored(session.last_stored()?),
@@ -346,7 +346,7 @@ impl Render {
         }
 
         let mode = name(settings.mode);
-        let report = Report::new(&session, &loaded, size, mode, &written.pictures);
+        let report = RenderReport::new(&session, &loaded, size, mode, &written.pictures);
         let (faces, pictures) = (written.faces, written.pictures);
         let report = match panorama {
             Some(_) => report.with_frames(faces),
@@ -371,7 +371,7 @@ impl Render {
         let (mut frames, mut pictures) = (Vec::new(), Vec::new());
         for face in panorama.faces(&shot.view) {
             let measured = session.measured_frame(&face.camera, &shot.clip, settings, repeat)?;
-            frames.push(Frame::new(&face, file.as_deref(), None, measured));
+            frames.push(FrameRecord::new(&face, file.as_deref(), None, measured));
             if file.is_some() {
                 pictures.push(session.last_picture()?);
             }
@@ -380,7 +380,7 @@ impl Render {
         Ok(RenderedPicture {
             picture: file.as_ref().map(|_| Pixels::Decoded(picture())),
             faces: frames.clone(),
-            ..RenderedPicture::from(Frame::together(&shot.view, file.as_deref(), &frames))
+            ..RenderedPicture::from(FrameRecord::together(&shot.view, file.as_deref(), &frames))
         })
     }
 

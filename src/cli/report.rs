@@ -8,7 +8,7 @@ use rara::gpu::{DeviceShape, NamedBytes};
 use rara::{Counts, FrameStats, Plane};
 use serde::Serialize;
 
-use super::camera::View;
+use super::camera::NamedView;
 use super::combine::{Combine, FrameSummary, combine};
 use super::output::{self, counted, grouped, say};
 use super::scenes::SceneLayers;
@@ -27,7 +27,7 @@ pub(super) enum Answer {
 
 /// The statistics of a command. Its keys are what scripts rely on.
 #[derive(Debug, Serialize)]
-pub(super) struct Report {
+pub(super) struct RenderReport {
     device: String,
     driver: String,
     shape: ShapeReport,
@@ -45,7 +45,7 @@ pub(super) struct Report {
     #[serde(skip)]
     has_kept: bool,
     memory: Memory,
-    frames: Vec<Frame>,
+    frames: Vec<FrameRecord>,
     #[serde(skip_serializing_if = "Option::is_none")]
     mean: Option<FrameStats>,
     #[serde(skip)]
@@ -54,7 +54,7 @@ pub(super) struct Report {
 
 /// One picture, and the frames that measured it.
 #[derive(Debug, Clone, Serialize)]
-pub(super) struct Frame {
+pub(super) struct FrameRecord {
     /// The number of its view or section.
     view: usize,
     name: String,
@@ -69,9 +69,9 @@ pub(super) struct Frame {
     pub(super) measured: FrameSummary,
 }
 
-impl Frame {
+impl FrameRecord {
     pub(super) fn new(
-        view: &View,
+        view: &NamedView,
         file: Option<&Path>,
         plane: Option<&Plane>,
         measured: FrameSummary,
@@ -92,7 +92,7 @@ impl Frame {
     }
 
     /// One of a picture that is made of several, which took as long as these together.
-    pub(super) fn together(view: &View, file: Option<&Path>, faces: &[Self]) -> Self {
+    pub(super) fn together(view: &NamedView, file: Option<&Path>, faces: &[Self]) -> Self {
         let measured = FrameSummary::together(faces.iter().map(|face| &face.measured));
         Self {
             faces: faces.len(),
@@ -137,7 +137,7 @@ struct Memory {
     purposes: Vec<NamedBytes>,
 }
 
-impl Report {
+impl RenderReport {
     /// Warns where nothing is to be seen, or a clip was given that `--mode none` ignores.
     fn warn(&self, clips: bool) {
         if clips && self.mode == "none" {
@@ -194,7 +194,7 @@ impl Report {
         loaded: &SceneLayers,
         size: (u32, u32),
         mode: String,
-        pictures: &[Frame],
+        pictures: &[FrameRecord],
     ) -> Self {
         let (device, driver, device_bytes) = session.about();
         let (shape, reason) = session.shape();
@@ -244,7 +244,7 @@ impl Report {
         }
     }
 
-    pub(super) fn with_frames(self, frames: Vec<Frame>) -> Self {
+    pub(super) fn with_frames(self, frames: Vec<FrameRecord>) -> Self {
         Self { frames, ..self }
     }
 
@@ -258,7 +258,7 @@ impl Report {
 }
 
 /// The table for people.
-impl fmt::Display for Report {
+impl fmt::Display for RenderReport {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let Self { scene, memory, .. } = self;
         let stats = &self.measured.stats;

@@ -6,11 +6,11 @@ use serde::Serialize;
 
 use super::compare::Measures;
 use super::failure::Failure;
-use super::output::{self, Progress};
+use super::output::{self, ProgressLine};
 use super::session::Session;
 
 #[derive(Debug, Serialize)]
-pub(super) struct View {
+pub(super) struct ResidualView {
     eye: [f64; 3],
     /// The baked scene, drawn without a clip.
     baked: Measures,
@@ -23,7 +23,7 @@ pub(super) struct View {
 pub(super) struct Residual {
     pub(super) baked: Measures,
     pub(super) hard: Measures,
-    pub(super) views: Vec<View>,
+    pub(super) views: Vec<ResidualView>,
     /// The line about the driver's compilation, where that took a moment.
     pub(super) compiled: Option<String>,
 }
@@ -36,7 +36,7 @@ pub(super) fn residual(
     clip: &Clip,
     cameras: &[Camera],
 ) -> Result<Residual, Failure> {
-    let mut progress = Progress::new("comparing");
+    let mut progress = ProgressLine::new("comparing");
     let settings = |mode| Settings::default().mode(mode);
     let mut session = Session::open(device, scene, ShFormat::Float)?;
     let mut pictures = Vec::new();
@@ -52,7 +52,7 @@ pub(super) fn residual(
         let (drawn, _) = session.picture(camera, &Clip::default(), &settings(Mode::None))?;
         let compare = |picture: &Picture| measure::compare(picture, &exact);
         let (baked, hard) = (compare(&drawn)?, compare(&hard)?);
-        views.push(View {
+        views.push(ResidualView {
             eye: camera.eye.to_array(),
             baked: baked.into(),
             hard: hard.into(),

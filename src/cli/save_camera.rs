@@ -6,7 +6,7 @@ use clap::Args;
 use rara::camera_files::SavedCamera;
 use serde::Serialize;
 
-use super::camera::{HEADING, View};
+use super::camera::{HEADING, NamedView};
 use super::output;
 
 /// The text of a file of a [`SavedCamera`], or of several.
@@ -30,7 +30,7 @@ impl SaveCameraArgs {
     /// Writes the cameras of all pictures, if they are wanted.
     pub(super) fn save<'a>(
         &self,
-        views: impl ExactSizeIterator<Item = &'a View>,
+        views: impl ExactSizeIterator<Item = &'a NamedView>,
     ) -> rara::Result<()> {
         let Some(file) = &self.save_camera else {
             return Ok(());
@@ -93,11 +93,11 @@ mod tests {
     fn several_are_a_list_with_names() {
         let folder = std::env::temp_dir().join(format!("rara-cameras-{}", std::process::id()));
         let file = folder.join("made/cameras.json");
-        let views: Vec<View> = cameras()
+        let views: Vec<NamedView> = cameras()
             .into_iter()
             .take(3)
             .enumerate()
-            .map(|(number, camera)| View {
+            .map(|(number, camera)| NamedView {
                 number,
                 name: format!("picture {number}"),
                 camera,

@@ -61,13 +61,13 @@ impl LayerClip<Region> {
     pub(super) fn within(&self, bounds: impl FnOnce() -> Bounds) -> Result<LayerClip> {
         Ok(match self {
             Self::Whole => LayerClip::Whole,
-            Self::Region(region) => LayerClip::Region(region.of(bounds)?),
+            Self::Region(region) => LayerClip::Region(region.resolve(bounds)?),
         })
     }
 }
 
 impl LayerClip {
-    pub(super) fn of(clip: Expression) -> Self {
+    pub(super) fn from_expression(clip: Expression) -> Self {
         match clip {
             Expression::All(all) if all.is_empty() => Self::Whole,
             region => Self::Region(region),
@@ -112,7 +112,7 @@ impl fmt::Display for LayerClip {
 
 impl LayerEntry {
     /// The layer of a file, as it is.
-    pub(super) fn of(path: &Path) -> Self {
+    pub(super) fn from_path(path: &Path) -> Self {
         Self {
             name: stem(path),
             path: path.into(),
@@ -139,7 +139,10 @@ impl LayerEntry {
         let clips = self
             .clips()
             .map(|clip| clip.map(|clip| clip.within(&bounds)).transpose());
-        let predicates = self.selected.iter().map(|one| one.predicate.of(&bounds));
+        let predicates = self
+            .selected
+            .iter()
+            .map(|one| one.predicate.resolve(&bounds));
         Ok(SceneDescription {
             clips: clips.collect::<Result<_>>()?,
             predicates: predicates.collect::<Result<_>>()?,
@@ -184,13 +187,13 @@ fn stem(path: &Path) -> String {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Document {
-    layers: Vec<Entry>,
+struct SceneJson {
+    layers: Vec<LayerRecord>,
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Entry {
+struct LayerRecord {
     name: Option<String>,
     path: PathBuf,
     position: Option<[f64; 3]>,
@@ -233,7 +236,7 @@ fn own_clip(tree: Option<Expression>, text: Option<String>) -> Result<Option<Lay
 
 impl SelectionRecord {
     /// The layer that it makes of one.
-    fn of(self, layer: &LayerEntry) -> Result<Selection> {
+    fn selection(self, layer: &LayerEntry) -> Result<Selection> {
         let mut selected = Selection::new(self.name, self.r#where.parse()?, layer);
         let state = selected.state;
         selected.state = state
@@ -282,7 +285,7 @@ pub(super) fn read(path: &Path) -> Result<Vec<LayerEntry>> {
     let text = std::fs::read(path).map_err(Error::io(path))?;
     let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&text);
     let mut json = serde_json::Deserializer::from_slice(text);
-    let document: Document = serde_path_to_error::deserialize(&mut json)
+    let document: SceneJson = serde_path_to_error::deserialize(&mut json)
         .map_err(|error| format(format!("field `{}`: {}", error.path(), error.inner())))?;
     json.end().map_err(|error| format(error.to_string()))?;
     if document.layers.is_empty() {
@@ -290,7 +293,7 @@ pub(super) fn read(path: &Path) -> Result<Vec<LayerEntry>> {
     }
     let folder = path.parent().unwrap_or(Path::new(""));
     let layers = document.layers.into_iter().enumerate();
-    let layer = |(number, entry): (usize, Entry)| {
+    let layer = |(number, entry): (usize, LayerRecord)| {
         let of_entry = |error: Error| format(format!("layer {number}: {error}"));
         let [w, x, y, z] = entry.rotation.unwrap_or([1.0, 0.0, 0.0, 0.0]);
         let position = DVec3::from(entry.position.unwrap_or_default());
@@ -311,7 +314,7 @@ pub(super) fn read(path: &Path) -> Result<Vec<LayerEntry>> {
             selected: Vec::new(),
         };
         for (at, selection) in entry.select.into_iter().enumerate() {
-            let selected = selection.of(&layer);
+            let selected = selection.selection(&layer);
             let selected = selected
                 .map_err(|error| format(format!("layer {number}, selection {at}: {error}")))?;
             layer.selected.push(selected);

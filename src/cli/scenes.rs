@@ -391,7 +391,7 @@ fn named_file(typed: &Path) -> Result<Vec<LayerEntry>, Failure> {
             None => scene_file::read(path).map_err(|error| JsonKind::Scene.wanted(path, error)),
         };
     }
-    let mut entry = LayerEntry::of(path);
+    let mut entry = LayerEntry::from_path(path);
     if let Some(trained) = training::scene_in(path)? {
         entry.path = trained;
     }

@@ -6,7 +6,7 @@ use rara::clip::Expression;
 use rara::{Bounds, Clip, ClipOp, Gaussians, Plane, Scene};
 
 use super::axis::Axis;
-use super::camera::{CameraArgs, View};
+use super::camera::{CameraArgs, NamedView};
 use super::clip::{ClipArgs, Regions, joined};
 use super::failure::Failure;
 use super::framing::Visible;
@@ -100,13 +100,13 @@ fn wanted(text: &str) -> Result<SectionRequest, String> {
     let Some((name, shares)) = text.split_once('=') else {
         return match text {
             "" => Err("expected an axis and a share, as axial=0.5, or the name of a plane".into()),
-            name if Axis::of(name).is_some() => Err(format!(
+            name if Axis::parse(name).is_some() => Err(format!(
                 "{name} needs a share of the scene, as in {name}=0.5"
             )),
             name => Ok(SectionRequest::Named(name.into())),
         };
     };
-    let axis = Axis::of(name).ok_or_else(|| {
+    let axis = Axis::parse(name).ok_or_else(|| {
         format!("'{name}' is no axis; there are axial (z), coronal (y) and sagittal (x), each with a leading ! or without")
     })?;
     let shares = Shares::parse(shares)?;
@@ -135,7 +135,7 @@ enum SectionPlan {
 
 #[derive(Debug)]
 pub(super) struct Section {
-    pub(super) view: View,
+    pub(super) view: NamedView,
     /// Its plane, and the one at its back where it has a thickness.
     pub(super) own: Vec<Expression>,
     /// What else clips.
@@ -212,7 +212,9 @@ impl SectionArgs {
         };
         // Errors that do not depend on the scene are found before it is read.
         let nothing = Gaussians::default();
-        sections.of(&(&nothing).into()).map_err(Failure::usage)?;
+        sections
+            .sections(&(&nothing).into())
+            .map_err(Failure::usage)?;
         Ok(Some(sections))
     }
 }
@@ -240,9 +242,9 @@ impl Sections {
         &self.shapes
     }
 
-    pub(super) fn of(&self, scene: &Scene<'_>) -> rara::Result<Vec<Section>> {
+    pub(super) fn sections(&self, scene: &Scene<'_>) -> rara::Result<Vec<Section>> {
         let bounds = Bounds::of(scene.clone());
-        let others = self.shapes.of(scene)?;
+        let others = self.shapes.expressions(scene)?;
         let rest = joined(&others, ClipOp::And);
         let visible = Visible::nearly_all_of(scene);
         let section = |(number, planned): (usize, &SectionPlan)| {
@@ -266,7 +268,7 @@ impl Sections {
                 own.push(Expression::Shape(far.into()));
             }
             Ok(Section {
-                view: View {
+                view: NamedView {
                     number,
                     name,
                     camera,

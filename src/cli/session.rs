@@ -95,9 +95,9 @@ impl Session {
         let most = match repeat {
             Repeat::Unmeasured => return self.frame(camera, clip, settings, 1),
             Repeat::Following => {
-                return Ok(FrameSummary::of(
-                    &[self.next_frame(camera, clip, settings)?],
-                ));
+                return Ok(FrameSummary::from_frames(&[
+                    self.next_frame(camera, clip, settings)?
+                ]));
             }
             Repeat::Exactly(most) | Repeat::UpTo(most) => most,
         };
@@ -112,7 +112,7 @@ impl Session {
                 break;
             }
         }
-        Ok(FrameSummary::of(&frames))
+        Ok(FrameSummary::from_frames(&frames))
     }
 
     /// Uploads the scene once more, its spherical harmonics stored in another way.
@@ -147,7 +147,9 @@ impl Session {
         repeat: u32,
     ) -> Result<FrameSummary> {
         let frames = (0..repeat).map(|_| self.one(camera, clip, settings));
-        Ok(FrameSummary::of(&frames.collect::<Result<Vec<_>>>()?))
+        Ok(FrameSummary::from_frames(
+            &frames.collect::<Result<Vec<_>>>()?,
+        ))
     }
 
     /// Renders a frame that takes over nothing.

@@ -6,7 +6,7 @@ use rara::{
     Clip, Cue, Cues, Gaussians, HeadlessDesc, Layer, Picture, Plane, Raster, Scene, Settings, Show,
 };
 
-use super::camera::View;
+use super::camera::NamedView;
 use super::combine::FrameSummary;
 use super::failure::Failure;
 use super::session::{Repeat, Session};
@@ -96,7 +96,7 @@ impl<'a> Slicer<'a> {
     pub(super) fn frame(
         &self,
         session: &mut Session,
-        (view, cut, settings): (&View, &Cut, &Settings),
+        (view, cut, settings): (&NamedView, &Cut, &Settings),
         repeat: Repeat,
     ) -> Result<FrameSummary, Failure> {
         let flat = self.cross_sections(&cut.plane);
@@ -109,7 +109,7 @@ impl<'a> Slicer<'a> {
     pub(super) fn draw_cues(
         &mut self,
         picture: &mut Picture,
-        (view, cut, settings): (&View, &Cut, &Settings),
+        (view, cut, settings): (&NamedView, &Cut, &Settings),
     ) -> Result<(), Failure> {
         let Some(cues) = self.args.cues() else {
             return Ok(());

@@ -32,7 +32,7 @@ pub(super) struct Stress {
 }
 
 #[derive(Debug, Serialize)]
-struct Document {
+struct StressJson {
     device: String,
     driver: String,
     rows: Vec<RegimeRow>,
@@ -72,7 +72,7 @@ impl Stress {
         );
         headless.close()?;
         if self.json {
-            output::json(&Document {
+            output::json(&StressJson {
                 device,
                 driver,
                 rows,

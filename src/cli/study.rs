@@ -7,7 +7,7 @@ use rara::Mode;
 use rara_lab::study::{self, report};
 
 use super::failure::Failure;
-use super::output::{self, Progress, counted, say};
+use super::output::{self, ProgressLine, counted, say};
 use super::process;
 use super::settings::DeviceArgs;
 
@@ -53,7 +53,7 @@ impl Study {
             ..study::StudyOptions::default()
         };
         process::make_drivers_folder();
-        let mut progress = Progress::new("drawing");
+        let mut progress = ProgressLine::new("drawing");
         let written = study::create(
             &self.folder,
             &self.scenes,

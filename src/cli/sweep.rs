@@ -19,7 +19,7 @@ use super::memory;
 use super::pictures::{self, Destination, Order, PictureArgs, Pixels, Plan, RenderedPicture};
 use super::profile::{Profile, ProfileArgs};
 use super::region::Region;
-use super::report::{Frame, Report};
+use super::report::{FrameRecord, RenderReport};
 use super::save_camera::SaveCameraArgs;
 use super::scenes::SceneArgs;
 use super::settings::name;
@@ -163,11 +163,11 @@ impl Sweep {
         regions.settle(&mut loaded)?;
         let scene = loaded.scene();
         let bounds = LazyCell::new(|| Bounds::of(&scene));
-        let moving = self.moving(|region| region.of(|| *bounds))?;
+        let moving = self.moving(|region| region.resolve(|| *bounds))?;
         let view = framing::views(views, &scene)?.remove(0);
         self.save_camera.save([&view].into_iter())?;
         let camera = view.camera;
-        let (mut shapes, op) = (regions.of(&scene)?, regions.op());
+        let (mut shapes, op) = (regions.expressions(&scene)?, regions.op());
         let called = |index: &u32| (*index as usize, view.name.clone());
         let Some(planned) = destination.left((0..self.frames).collect(), called)? else {
             return Ok(());
@@ -203,10 +203,10 @@ impl Sweep {
             let measured = if self.independent || self.repeat > 1 {
                 session.frame(&camera, &clip, settings, self.repeat)?
             } else {
-                FrameSummary::of(&[session.next_frame(&camera, &clip, settings)?])
+                FrameSummary::from_frames(&[session.next_frame(&camera, &clip, settings)?])
             };
             let plane = moving.plane(position(range, index, self.frames))?;
-            let frame = Frame::new(&view, file, plane.as_ref(), measured);
+            let frame = FrameRecord::new(&view, file, plane.as_ref(), measured);
             let stored = file.map(|_| session.last_stored()).transpose()?;
             Ok(RenderedPicture {
                 picture: stored.map(Pixels::Stored),
@@ -218,7 +218,7 @@ impl Sweep {
         }
 
         let mode = name(settings.mode);
-        let report = Report::new(&session, &loaded, size, mode, &written.pictures);
+        let report = RenderReport::new(&session, &loaded, size, mode, &written.pictures);
         let report = report.with_frames(written.pictures).with_mean();
         session.close()?;
         Ok(report.print(self.pictures.answer(), true, &written.files)?)

@@ -193,7 +193,7 @@ pub(super) fn is_folder(path: &Path) -> bool {
 
 /// The file name of a picture or a film; its ending says the format.
 pub(super) fn film_path(path: OsString) -> Result<PathBuf, String> {
-    let is_film = film::Kind::of(Path::new(&path)).is_some();
+    let is_film = film::FilmFormat::from_path(Path::new(&path)).is_some();
     match is_film {
         true => Ok(path.into()),
         false => picture_path(path)

@@ -13,7 +13,7 @@ use super::{framing, output, values};
 
 /// A camera and what its file calls it.
 #[derive(Debug, Clone)]
-pub(super) struct View {
+pub(super) struct NamedView {
     /// Its number in the file; it replaces `{}` in a picture's name.
     pub(super) number: usize,
     pub(super) name: String,
@@ -24,7 +24,7 @@ pub(super) struct View {
 #[derive(Debug)]
 pub(super) enum Views {
     /// Cameras that are known before the scene is loaded.
-    Given(Vec<View>),
+    Given(Vec<NamedView>),
     /// A camera that the scene will place.
     Framed(Framing),
     /// An orbit round the scene that such a camera frames.
@@ -78,7 +78,7 @@ impl Framing {
             Some(_) => self.turned(bounds.centre())?,
             None => self.lens.frame(bounds, self.up, self.size)?,
         };
-        self.depths.of(self.aimed(camera, bounds.centre()))
+        self.depths.camera(self.aimed(camera, bounds.centre()))
     }
 
     /// Finds errors that do not depend on the scene before it is read.
@@ -86,7 +86,7 @@ impl Framing {
         let eye = self.eye.unwrap_or_default();
         let aside = self.up.normalize_or(UP).any_orthonormal_vector();
         self.depths
-            .of(self.turned(eye + aside * (1.0 + eye.length()))?)?;
+            .camera(self.turned(eye + aside * (1.0 + eye.length()))?)?;
         Ok(self)
     }
 }
@@ -132,11 +132,11 @@ impl Views {
 
     /// The camera of a command that measures, once the scene is known; one that frames the scene holds the box around it.
     /// [`framing::views`] are nearer.
-    pub(super) fn of(self, scene: &Scene<'_>) -> Result<Vec<View>, Failure> {
+    pub(super) fn views(self, scene: &Scene<'_>) -> Result<Vec<NamedView>, Failure> {
         match self {
             Self::Framed(framed) => {
                 framed.note.iter().cloned().for_each(output::say_afterwards);
-                Ok(vec![View {
+                Ok(vec![NamedView {
                     number: 0,
                     name: "framing".into(),
                     camera: framed.boxed(&Bounds::of(scene))?,
@@ -150,11 +150,11 @@ impl Views {
 /// The views that `wanted` means: a number from 0, a name that may leave out its ending, a range of numbers with both ends, as
 /// 3..6, or several of these with commas between them. A name goes before what else could be meant.
 pub(super) fn picked(
-    views: &[View],
+    views: &[NamedView],
     wanted: &str,
     path: &Path,
     flag: &str,
-) -> Result<Vec<View>, Failure> {
+) -> Result<Vec<NamedView>, Failure> {
     let whole = found(views, wanted);
     if whole.is_none() && wanted.contains(',') {
         let parts = wanted
@@ -191,7 +191,7 @@ pub(super) fn picked(
 }
 
 /// Where the view with the number or name `wanted` is.
-fn found(views: &[View], wanted: &str) -> Option<usize> {
+fn found(views: &[NamedView], wanted: &str) -> Option<usize> {
     let stem = |name: &str| Path::new(name).file_stem().map(|s| s.to_owned());
     let by_number = wanted.parse::<usize>().ok().filter(|n| *n < views.len());
     by_number
@@ -212,7 +212,7 @@ mod tests {
         let camera = Camera::look_at(DVec3::ZERO, DVec3::Z, DVec3::NEG_Y, 50.0, (8, 8)).unwrap();
         let names = ["a.jpg", "b/7.png", "2", "0..1", "x,y"];
         let views = || {
-            names.iter().enumerate().map(|(number, n)| View {
+            names.iter().enumerate().map(|(number, n)| NamedView {
                 number,
                 name: n.to_string(),
                 camera,
@@ -260,7 +260,7 @@ mod tests {
             note: None,
         };
         let camera = |framed: &Framing| {
-            let views = Views::Framed(framed.clone()).of(&(&made).into());
+            let views = Views::Framed(framed.clone()).views(&(&made).into());
             views.expect("a view").remove(0).camera
         };
         let boxed = Camera::frame(&bounds, UP, 50.0, (64, 48)).expect("a view");

@@ -7,7 +7,7 @@ use rara::scene::{Bounds, Kind, generate};
 use rara::{Aov, Camera, Clip, Error, Mode, Raster, Scene, Settings, ShFormat};
 
 use super::failure::Failure;
-use super::output::{Progress, say};
+use super::output::{ProgressLine, say};
 use super::session::Session;
 use super::settings::DeviceArgs;
 
@@ -46,7 +46,7 @@ impl Warm {
         let sh = usual.precision.sh;
         let mut session = Session::open(&self.device.meant(), &scene, sh)?;
         let frames = self.frames()?;
-        let mut progress = Progress::new("compiling shaders");
+        let mut progress = ProgressLine::new("compiling shaders");
         for (done, (stored, clip, settings)) in frames.iter().enumerate() {
             progress.update(done as u64, frames.len() as u64 + 1);
             session.reload(&scene, *stored)?;

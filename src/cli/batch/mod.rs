@@ -15,14 +15,14 @@ use serde_json::json;
 
 use super::failure::Failure;
 use super::kept::SessionCache;
-use super::output::{self, Progress, counted, counted_are, say};
-use super::pictures::{Order, Part, Plan};
-use super::report::Frame;
+use super::output::{self, ProgressLine, counted, counted_are, say};
+use super::pictures::{Order, Plan, RunShare};
+use super::report::FrameRecord;
 use super::times;
 use super::{Command, needs_met, parsed};
 use jobs::Job;
 pub(super) use jobs::save as save_job;
-use state::{Claim, Entry, State, Worker, stamp};
+use state::{Claim, State, StateRecord, Worker, stamp};
 
 /// Draw the pictures of many commands, and share them among workers
 #[derive(Debug, Args)]
@@ -51,7 +51,7 @@ pub(super) struct Batch {
     ///
     /// Shares take about equally long, and are the same each time.
     #[arg(long, value_name = "K/N")]
-    shard: Option<Part>,
+    shard: Option<RunShare>,
     /// Folder of what is done [default: the name of the first file and .done]
     #[arg(long, value_name = "DIR")]
     state: Option<PathBuf>,
@@ -158,7 +158,7 @@ impl Batch {
         let mut names: HashMap<String, String> = HashMap::new();
         for file in &self.files {
             for job in jobs::read(file)? {
-                let about = |failure: Failure| failure.of(&job.name);
+                let about = |failure: Failure| failure.in_job(&job.name);
                 let plan = match job.command().map_err(about)? {
                     Command::Render(command) => command.plan(),
                     Command::Sweep(command) => command.plan(),
@@ -261,7 +261,7 @@ impl Batch {
         state: &State,
     ) -> Result<(), Failure> {
         let name = |(job, index): &(usize, usize)| &planned[*job].plan.pictures[*index].1;
-        let entries: Vec<&Entry> = share
+        let entries: Vec<&StateRecord> = share
             .iter()
             .filter_map(|picture| state.entries.get(name(picture)))
             .collect();
@@ -271,8 +271,8 @@ impl Batch {
             *count += 1;
             *seconds += entry.seconds;
         }
-        let ms = |entry: &&Entry| entry.frame["wall_ms"].as_f64().unwrap_or(0.0);
-        let median = super::combine::Combine::Median.of(entries.iter().map(ms).collect());
+        let ms = |entry: &&StateRecord| entry.frame["wall_ms"].as_f64().unwrap_or(0.0);
+        let median = super::combine::Combine::Median.apply(entries.iter().map(ms).collect());
         let seconds = times::sum(entries.iter().map(|entry| entry.seconds));
         if self.json {
             let workers = workers.iter().map(|(name, (count, seconds))| {
@@ -350,7 +350,7 @@ fn done(planned: &[JobPlan], share: &[(usize, usize)], state: &State) -> Vec<Pic
 fn missing<'a>(planned: &'a [JobPlan], share: &[(usize, usize)], state: &State) -> Vec<&'a str> {
     let name = |(job, index): &(usize, usize)| planned[*job].plan.pictures[*index].1.as_str();
     let entry = |name: &str| state.entries.get(name);
-    let is_missing = |name: &&str| !entry(name).is_some_and(Entry::is_there);
+    let is_missing = |name: &&str| !entry(name).is_some_and(StateRecord::is_there);
     share.iter().map(name).filter(is_missing).collect()
 }
 
@@ -390,7 +390,7 @@ fn draw(planned: &[JobPlan], folder: &Path, state: &State, prints: bool) -> Resu
         state,
         prints,
         progress: Mutex::new(Pace {
-            bar: Progress::new("drawing"),
+            bar: ProgressLine::new("drawing"),
             begin: Instant::now(),
             last: Instant::now(),
             done: 0.0,
@@ -411,7 +411,7 @@ fn draw(planned: &[JobPlan], folder: &Path, state: &State, prints: bool) -> Resu
             _ => unreachable!("a job has one of these commands"),
         };
         if let Err(failure) = drawn {
-            let failure = failure.of(&one.job.name);
+            let failure = failure.in_job(&one.job.name);
             failure.details().for_each(output::complain);
             output::complain(&failure);
         }
@@ -429,7 +429,7 @@ struct Run<'a> {
 
 /// How far a run has come.
 struct Pace {
-    bar: Progress,
+    bar: ProgressLine,
     begin: Instant,
     /// When the last picture was done.
     last: Instant,
@@ -495,11 +495,11 @@ impl Order for OneJob<'_> {
         *lock(&self.driver) = driver.to_owned();
     }
 
-    fn end(&self, number: usize, file: &Path, frame: &Frame) -> Result<(), Failure> {
+    fn end(&self, number: usize, file: &Path, frame: &FrameRecord) -> Result<(), Failure> {
         let seconds = lock(&self.run.progress).step(self.planned.plan.work);
         let about = std::fs::metadata(file).map_err(rara::Error::io(file))?;
         let since = SystemTime::now().duration_since(UNIX_EPOCH);
-        let entry = Entry {
+        let entry = StateRecord {
             picture: self.name(number).to_owned(),
             file: file.to_owned(),
             bytes: about.len(),

@@ -1,7 +1,7 @@
 //! The share of one of several workers: by `--shard`, or as an array job of a scheduler says.
 
 use super::super::failure::Failure;
-use super::super::pictures::Part;
+use super::super::pictures::RunShare;
 
 /// A scheduler sets these for a task of an array: its index, the first index, the last one, and the step between two.
 const SCHEDULERS: [[&str; 4]; 2] = [
@@ -32,7 +32,7 @@ const COUNT: &str = "RARA_SHARDS";
 /// The share of this process, if it is a task of an array.
 pub(super) fn of_scheduler(
     variable: impl Fn(&str) -> Option<String>,
-) -> Result<Option<Part>, Failure> {
+) -> Result<Option<RunShare>, Failure> {
     let number = |name: &str| variable(name).and_then(|text| text.trim().parse::<u32>().ok());
     for [index, first, last, step] in SCHEDULERS {
         // Outside of an array SGE sets "undefined".
@@ -72,14 +72,14 @@ pub(super) fn of_scheduler(
     Ok(None)
 }
 
-fn part(number: u32, of: u32) -> Result<Part, Failure> {
+fn part(number: u32, of: u32) -> Result<RunShare, Failure> {
     format!("{number}/{of}").parse().map_err(Failure::Usage)
 }
 
 /// Says which of the pictures are a part's, by the number of the scene and the work of each. Parts follow each other, so that few
 /// workers load a scene. Within a scene, neighbours are spread over its parts, since they take about equally long, and more or
 /// less than others of the same estimate.
-pub(super) fn share(part: Part, pictures: &[(usize, f64)]) -> Vec<bool> {
+pub(super) fn share(part: RunShare, pictures: &[(usize, f64)]) -> Vec<bool> {
     // The fractions of its multiples are spread evenly.
     const GOLDEN_RATIO: f64 = 1.618_033_988_749_895;
     let place = |index: usize| (index as f64 * GOLDEN_RATIO).fract();
@@ -105,7 +105,7 @@ pub(super) fn share(part: Part, pictures: &[(usize, f64)]) -> Vec<bool> {
 mod tests {
     use super::*;
 
-    fn of(set: &[(&str, &str)]) -> Result<Option<String>, String> {
+    fn parse(set: &[(&str, &str)]) -> Result<Option<String>, String> {
         let variable = |name: &str| {
             let found = set.iter().find(|(of, _)| *of == name);
             found.map(|(_, value)| (*value).to_owned())
@@ -123,13 +123,13 @@ mod tests {
                 "SLURM_ARRAY_TASK_MAX",
                 "SLURM_ARRAY_TASK_COUNT",
             ];
-            of(&[(a, id), (b, min), (c, max), (d, count)])
+            parse(&[(a, id), (b, min), (c, max), (d, count)])
         };
         assert_eq!(slurm("0", "0", "3", "4"), Ok(Some("1/4".into())));
         assert_eq!(slurm("40", "1", "40", "40"), Ok(Some("40/40".into())));
         assert!(slurm("9", "1", "9", "3").is_err(), "1,5,9");
         let sge = |id| {
-            of(&[
+            parse(&[
                 ("SGE_TASK_ID", id),
                 ("SGE_TASK_FIRST", "2"),
                 ("SGE_TASK_LAST", "10"),
@@ -139,17 +139,17 @@ mod tests {
         assert_eq!(sge("6"), Ok(Some("3/5".into())));
         assert_eq!(sge("undefined"), Ok(None));
         let pod = [("JOB_COMPLETION_INDEX", "7"), ("RARA_SHARDS", "8")];
-        assert_eq!(of(&pod), Ok(Some("8/8".into())));
+        assert_eq!(parse(&pod), Ok(Some("8/8".into())));
         assert!(
-            of(&pod[..1])
+            parse(&pod[..1])
                 .expect_err("of how many")
                 .contains("RARA_SHARDS")
         );
-        assert!(of(&[("JOB_COMPLETION_INDEX", "8"), ("RARA_SHARDS", "8")]).is_err());
-        let pbs = |index| of(&[("PBS_ARRAY_INDEX", index), ("RARA_SHARDS", "3")]);
+        assert!(parse(&[("JOB_COMPLETION_INDEX", "8"), ("RARA_SHARDS", "8")]).is_err());
+        let pbs = |index| parse(&[("PBS_ARRAY_INDEX", index), ("RARA_SHARDS", "3")]);
         assert_eq!(pbs("3"), Ok(Some("3/3".into())));
         assert!(pbs("0").expect_err("from 1").contains("from 1"));
-        assert_eq!(of(&[]), Ok(None));
+        assert_eq!(parse(&[]), Ok(None));
     }
 
     #[test]

@@ -18,7 +18,7 @@ use serde_json::Value;
 use super::super::output;
 
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub(super) struct Entry {
+pub(super) struct StateRecord {
     /// Its file, or the pattern of its file and its number where names are left open.
     pub(super) picture: String,
     pub(super) file: PathBuf,
@@ -41,7 +41,7 @@ pub(super) struct Entry {
 /// What workers have done.
 #[derive(Debug, Default)]
 pub(super) struct State {
-    pub(super) entries: BTreeMap<String, Entry>,
+    pub(super) entries: BTreeMap<String, StateRecord>,
     /// Lines that are none of these.
     pub(super) unread: usize,
 }
@@ -65,7 +65,7 @@ impl State {
             // A line without an end is one that its worker has not finished, or never will.
             let whole = text.rfind('\n').map_or("", |end| &text[..end]);
             for line in whole.lines() {
-                match serde_json::from_str::<Entry>(line) {
+                match serde_json::from_str::<StateRecord>(line) {
                     Ok(entry) => state.add(entry),
                     Err(_) => state.unread += 1,
                 }
@@ -75,7 +75,7 @@ impl State {
     }
 
     /// Of two entries of one picture the later one counts.
-    fn add(&mut self, entry: Entry) {
+    fn add(&mut self, entry: StateRecord) {
         match self.entries.get(&entry.picture) {
             Some(there) if there.at > entry.at => {}
             _ => {
@@ -85,7 +85,7 @@ impl State {
     }
 }
 
-impl Entry {
+impl StateRecord {
     /// True where its file is as it was written.
     pub(super) fn is_there(&self) -> bool {
         fs::metadata(&self.file).is_ok_and(|about| about.is_file() && about.len() == self.bytes)
@@ -160,7 +160,7 @@ impl Worker {
     }
 
     /// Notes that a picture is done.
-    pub(super) fn note(&self, entry: &Entry) -> Result<()> {
+    pub(super) fn note(&self, entry: &StateRecord) -> Result<()> {
         let mut lines = self.lines.lock().unwrap_or_else(PoisonError::into_inner);
         let path = self.folder.join(format!("{}.jsonl", mark()));
         if lines.is_none() {
@@ -217,8 +217,8 @@ pub(super) fn stamp(text: &str) -> String {
 mod tests {
     use super::*;
 
-    fn entry(picture: &str, at: f64) -> Entry {
-        Entry {
+    fn entry(picture: &str, at: f64) -> StateRecord {
+        StateRecord {
             picture: picture.into(),
             file: picture.into(),
             bytes: 3,
@@ -239,7 +239,7 @@ mod tests {
         let worker = Worker::new(&folder).expect("a folder");
         worker.note(&entry("a", 2.0)).expect("noted");
         worker.note(&entry("b", 3.0)).expect("noted");
-        let line = |entry: &Entry| serde_json::to_string(entry).expect("JSON");
+        let line = |entry: &StateRecord| serde_json::to_string(entry).expect("JSON");
         let half = &line(&entry("c", 1.0))[..20];
         let other = format!("{}\n?\n{half}", line(&entry("a", 1.0)));
         fs::write(folder.join("other.jsonl"), other).expect("written");

@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use png::{BitDepth, BlendOp, ColorType, Compression, Encoder, EncodingError, Writer};
 use rara::{Error, Result};
 
-use super::{Place, wanted};
+use super::{FilmTarget, wanted};
 
 pub(in super::super) struct Apng {
     encoder: Writer<SharedWriter>,
@@ -18,7 +18,7 @@ pub(in super::super) struct Apng {
 
 /// The place that the encoder writes to, which outlives it.
 #[derive(Clone)]
-struct SharedWriter(Arc<Mutex<Place>>);
+struct SharedWriter(Arc<Mutex<FilmTarget>>);
 
 impl Write for SharedWriter {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
@@ -35,7 +35,7 @@ impl Write for SharedWriter {
 impl Apng {
     /// Begins a film of so many pictures, which repeats without an end.
     pub(super) fn begin(
-        place: Place,
+        place: FilmTarget,
         file: &Path,
         (width, height): (u32, u32),
         frames: usize,

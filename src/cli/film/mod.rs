@@ -50,7 +50,7 @@ const FPS: u16 = 30;
 pub(super) const ENDINGS: &str = ".mp4, .mov, .mkv or .webm";
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum FilmFormat {
     /// An animated PNG, without loss and with alpha.
     Apng,
     /// Bytes without a header.
@@ -59,13 +59,13 @@ pub(super) enum Kind {
     Video(Container),
 }
 
-impl Kind {
+impl FilmFormat {
     /// The kind of film that a file's name stands for; none for that of a picture.
-    pub(super) fn of(path: &Path) -> Option<Self> {
+    pub(super) fn from_path(path: &Path) -> Option<Self> {
         let ending = path.extension()?.to_str()?.to_ascii_lowercase();
         match ending.as_str() {
             "apng" => Some(Self::Apng),
-            other => Container::of(other).map(Self::Video),
+            other => Container::from_extension(other).map(Self::Video),
         }
     }
 
@@ -77,7 +77,10 @@ impl Kind {
 
 impl FilmArgs {
     /// The kind of film that is asked for; none for pictures.
-    pub(super) fn kind(&self, output: Option<&Path>) -> std::result::Result<Option<Kind>, Failure> {
+    pub(super) fn kind(
+        &self,
+        output: Option<&Path>,
+    ) -> std::result::Result<Option<FilmFormat>, Failure> {
         let is_stream = output == Some(Path::new(STANDARD));
         let kind = match self.format {
             Some(_) if !is_stream => {
@@ -87,11 +90,11 @@ impl FilmArgs {
                         .into(),
                 ));
             }
-            Some(Stream::Apng) => Some(Kind::Apng),
-            Some(Stream::Rgba) => Some(Kind::Raw),
-            Some(Stream::Png) | None => output.and_then(Kind::of),
+            Some(Stream::Apng) => Some(FilmFormat::Apng),
+            Some(Stream::Rgba) => Some(FilmFormat::Raw),
+            Some(Stream::Png) | None => output.and_then(FilmFormat::from_path),
         };
-        if self.fps.is_some() && !matches!(kind, Some(Kind::Apng | Kind::Video(_))) {
+        if self.fps.is_some() && !matches!(kind, Some(FilmFormat::Apng | FilmFormat::Video(_))) {
             return Err(Failure::Usage(format!(
                 "--fps is the pace of a film: give -o a name that ends in .apng, {ENDINGS}, or leave it out"
             )));
@@ -100,7 +103,7 @@ impl FilmArgs {
     }
 
     /// Fails early where such a film could not be written to `file`.
-    pub(super) fn check(&self, kind: Kind, file: &Path) -> std::result::Result<(), Failure> {
+    pub(super) fn check(&self, kind: FilmFormat, file: &Path) -> std::result::Result<(), Failure> {
         if filled(file, 0, "a") != filled(file, 1, "b") {
             return Err(Failure::Usage(
                 "a film is one file: leave the braces out of its name, or name numbered pictures, as frame_{:04}.png".into(),
@@ -115,19 +118,19 @@ impl FilmArgs {
     /// Begins a film of so many pictures, all of one size.
     pub(super) fn begin(
         &self,
-        kind: Kind,
+        kind: FilmFormat,
         file: &Path,
         size: (u32, u32),
         frames: usize,
     ) -> Result<Film> {
         let fps = self.fps.unwrap_or(FPS);
         let place = match file == Path::new(STANDARD) {
-            true => Place::Stdout,
-            false => Place::File(Unfinished::begin(file)?),
+            true => FilmTarget::Stdout,
+            false => FilmTarget::File(Unfinished::begin(file)?),
         };
         Ok(match (kind, place) {
-            (Kind::Apng, place) => Film::Apng(Apng::begin(place, file, size, frames, fps)?),
-            (Kind::Video(container), Place::File(place)) => {
+            (FilmFormat::Apng, place) => Film::Apng(Apng::begin(place, file, size, frames, fps)?),
+            (FilmFormat::Video(container), FilmTarget::File(place)) => {
                 Film::Video(Video::begin(place, file, container, (size, fps))?)
             }
             (_, place) => Film::Raw(place),
@@ -137,7 +140,7 @@ impl FilmArgs {
 
 pub(super) enum Film {
     Apng(Apng),
-    Raw(Place),
+    Raw(FilmTarget),
     Video(Video),
 }
 
@@ -164,12 +167,12 @@ impl Film {
 
 /// Where a film's bytes go.
 #[derive(Debug)]
-pub(super) enum Place {
+pub(super) enum FilmTarget {
     Stdout,
     File(Unfinished),
 }
 
-impl Place {
+impl FilmTarget {
     fn finish(self) -> Result<()> {
         match self {
             Self::Stdout => wanted(io::stdout().flush(), Path::new("stdout")).map(|_| ()),
@@ -178,7 +181,7 @@ impl Place {
     }
 }
 
-impl Write for Place {
+impl Write for FilmTarget {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         match self {
             Self::Stdout => io::stdout().write(bytes),
@@ -231,9 +234,9 @@ mod tests {
 
     #[test]
     fn names_say_what_is_a_film() {
-        let kind = |name: &str| Kind::of(Path::new(name));
-        assert_eq!(kind("a.APNG"), Some(Kind::Apng));
-        assert!(kind("a.mp4").is_some_and(Kind::is_opaque));
+        let kind = |name: &str| FilmFormat::from_path(Path::new(name));
+        assert_eq!(kind("a.APNG"), Some(FilmFormat::Apng));
+        assert!(kind("a.mp4").is_some_and(FilmFormat::is_opaque));
         assert!(kind("a.webm").is_some() && kind("a.mov").is_some() && kind("a.mkv").is_some());
         for picture in ["a.png", "a.exr", "-", "mp4", "a.gif"] {
             assert_eq!(kind(picture), None, "{picture}");

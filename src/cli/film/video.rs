@@ -31,7 +31,7 @@ const VP9: &[&str] = &[
 ];
 
 impl Container {
-    pub(super) fn of(ending: &str) -> Option<Self> {
+    pub(super) fn from_extension(ending: &str) -> Option<Self> {
         let (format, flags) = match ending {
             "mp4" => ("mp4", H264),
             "mov" => ("mov", H264),

@@ -8,7 +8,7 @@ mod visible;
 
 use rara::{Camera, Scene};
 
-use super::camera::{View, Views};
+use super::camera::{NamedView, Views};
 use super::failure::Failure;
 use super::lens::Lens;
 use super::output;
@@ -17,21 +17,21 @@ use super::views::Framing;
 pub(super) use visible::Visible;
 
 /// The cameras, once the scene is known.
-pub(super) fn views(views: Views, scene: &Scene<'_>) -> Result<Vec<View>, Failure> {
+pub(super) fn views(views: Views, scene: &Scene<'_>) -> Result<Vec<NamedView>, Failure> {
     match views {
         Views::Given(views) => Ok(views),
         framed => {
             framed.note().into_iter().for_each(output::say_afterwards);
-            views_of(framed, &Visible::of(scene))
+            views_of(framed, &Visible::from_scene(scene))
         }
     }
 }
 
 /// The cameras, once what is visible is known.
-pub(super) fn views_of(views: Views, visible: &Visible) -> Result<Vec<View>, Failure> {
+pub(super) fn views_of(views: Views, visible: &Visible) -> Result<Vec<NamedView>, Failure> {
     match views {
         Views::Given(views) => Ok(views),
-        Views::Framed(framed) => Ok(vec![View {
+        Views::Framed(framed) => Ok(vec![NamedView {
             number: 0,
             name: "framing".into(),
             camera: held(&framed, visible)?,
@@ -59,7 +59,7 @@ fn held(framed: &Framing, visible: &Visible) -> Result<Camera, Failure> {
             camera.eye(visible.before(camera.rotation, point))
         }
     };
-    framed.depths.of(placed)
+    framed.depths.camera(placed)
 }
 
 /// The most places of an orbit that are looked at.
@@ -67,9 +67,9 @@ const PLACES: usize = 64;
 
 /// An orbit round the middle of what is visible, or round the target, as near as shows all of it from everywhere; from the eye
 /// where a flag says it.
-fn round(orbit: Orbit, framed: &Framing, visible: &Visible) -> Result<Vec<View>, Failure> {
+fn round(orbit: Orbit, framed: &Framing, visible: &Visible) -> Result<Vec<NamedView>, Failure> {
     let pivot = framed.target.unwrap_or(visible.middle);
-    let camera = framed.depths.of(framed.turned(pivot)?)?;
+    let camera = framed.depths.camera(framed.turned(pivot)?)?;
     let places = orbit.views(camera, (pivot, framed.up));
     let step = places.len().div_ceil(PLACES).max(1);
     let looked_at = || places.iter().step_by(step).map(|place| &place.camera);

@@ -32,7 +32,7 @@ pub(in super::super) struct Visible {
 impl Visible {
     /// What is framed of a scene: of each layer that is shown what is linked to most of it, and more where that weighs much for
     /// the room that it takes. Clips do not count, so that a picture with a clip and one without are taken from one place.
-    pub(in super::super) fn of(scene: &Scene<'_>) -> Self {
+    pub(in super::super) fn from_scene(scene: &Scene<'_>) -> Self {
         Self::chosen(scene, false)
     }
 

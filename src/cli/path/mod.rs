@@ -9,7 +9,7 @@ use clap::Args;
 
 pub(super) use orbit::Orbit;
 
-use super::camera::{CameraArgs, View, Views};
+use super::camera::{CameraArgs, NamedView, Views};
 use super::failure::Failure;
 use spline::Spline;
 
@@ -131,8 +131,8 @@ impl PathArgs {
 }
 
 /// The views of a path's cameras, which are named for it and numbered from 0.
-fn named(path: &str, cameras: impl Iterator<Item = rara::Camera>) -> Vec<View> {
-    let view = |(number, camera)| View {
+fn named(path: &str, cameras: impl Iterator<Item = rara::Camera>) -> Vec<NamedView> {
+    let view = |(number, camera)| NamedView {
         number,
         name: format!("{path}_{number}"),
         camera,

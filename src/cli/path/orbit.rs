@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use glam::{DMat3, DVec3};
 use rara::Camera;
 
-use super::super::camera::View;
+use super::super::camera::NamedView;
 
 /// So many pictures on the way round.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -21,7 +21,7 @@ impl Orbit {
         self,
         camera: Camera,
         (pivot, axis): (DVec3, DVec3),
-    ) -> Vec<View> {
+    ) -> Vec<NamedView> {
         let axis = axis.normalize_or(DVec3::NEG_Y);
         let closed = self.turns.fract() == 0.0;
         let places = (0..self.frames).map(|index| {

@@ -9,13 +9,13 @@ use std::ops::{Add, Mul};
 use glam::{DMat3, DQuat, DVec3, DVec4};
 use rara::Camera;
 
-use super::super::camera::View;
+use super::super::camera::NamedView;
 
 /// Steps between two cameras in which the way is measured.
 const STEPS: usize = 64;
 
 /// What can go from one place to another.
-trait Place: Copy {
+trait Interpolate: Copy {
     type Step: Copy + Add<Output = Self::Step> + Mul<f64, Output = Self::Step>;
     /// The shortest way to another place.
     fn way(self, to: Self) -> Self::Step;
@@ -25,7 +25,7 @@ trait Place: Copy {
     }
 }
 
-impl Place for DVec3 {
+impl Interpolate for DVec3 {
     type Step = Self;
     fn way(self, to: Self) -> Self {
         to - self
@@ -35,7 +35,7 @@ impl Place for DVec3 {
     }
 }
 
-impl Place for DVec4 {
+impl Interpolate for DVec4 {
     type Step = Self;
     fn way(self, to: Self) -> Self {
         to - self
@@ -46,7 +46,7 @@ impl Place for DVec4 {
 }
 
 /// Ways are axes times angles, in the rotation's own frame.
-impl Place for DQuat {
+impl Interpolate for DQuat {
     type Step = DVec3;
     fn way(self, to: Self) -> DVec3 {
         let turn = self.inverse() * to;
@@ -69,7 +69,7 @@ struct Key {
 }
 
 impl Key {
-    fn of(camera: &Camera) -> Self {
+    fn from_camera(camera: &Camera) -> Self {
         Self {
             eye: camera.eye,
             turn: DQuat::from_mat3(&camera.rotation.transpose()),
@@ -101,7 +101,7 @@ pub(super) struct Spline {
 
 impl Spline {
     /// The way through the cameras of these views; back to the first where it is closed.
-    pub(super) fn through(views: &[View], closed: bool) -> Result<Self, String> {
+    pub(super) fn through(views: &[NamedView], closed: bool) -> Result<Self, String> {
         let camera = views.first().map(|view| view.camera);
         let camera = camera.ok_or("--path spline has no cameras to go through")?;
         for view in views {
@@ -121,7 +121,7 @@ impl Spline {
         }
         let mut keys: Vec<Key> = Vec::new();
         for view in views {
-            let key = Key::of(&view.camera);
+            let key = Key::from_camera(&view.camera);
             // What stands still would have no direction.
             if keys.last().is_none_or(|last| is_apart(last, &key)) {
                 keys.push(key);
@@ -165,7 +165,7 @@ impl Spline {
         Ok(spline)
     }
 
-    pub(super) fn views(&self, frames: u32) -> Vec<View> {
+    pub(super) fn views(&self, frames: u32) -> Vec<NamedView> {
         let place = |index| self.camera_at(super::share(index, frames, self.closed));
         super::named("spline", (0..frames).map(place))
     }
@@ -201,7 +201,7 @@ impl Spline {
         }
     }
 
-    fn curve<T: Place>(&self, piece: usize, share: f64, of: impl Fn(&Key) -> T) -> T {
+    fn curve<T: Interpolate>(&self, piece: usize, share: f64, of: impl Fn(&Key) -> T) -> T {
         let next = (piece + 1) % self.keys.len();
         let (from, to) = (of(&self.keys[piece]), of(&self.keys[next]));
         // The ends are the cameras themselves, without rounding.
@@ -220,7 +220,7 @@ impl Spline {
     }
 
     /// How fast the way passes a key.
-    fn pace<T: Place>(&self, key: usize, of: &impl Fn(&Key) -> T) -> T::Step {
+    fn pace<T: Interpolate>(&self, key: usize, of: &impl Fn(&Key) -> T) -> T::Step {
         let count = self.keys.len();
         let pace = |piece: usize| {
             let way = of(&self.keys[piece]).way(of(&self.keys[(piece + 1) % count]));
@@ -248,7 +248,7 @@ fn is_apart(a: &Key, b: &Key) -> bool {
 mod tests {
     use super::*;
 
-    fn views(eyes: &[(DVec3, DVec3)]) -> Vec<View> {
+    fn views(eyes: &[(DVec3, DVec3)]) -> Vec<NamedView> {
         let cameras = eyes.iter().enumerate().map(|(number, (eye, target))| {
             let fov_y = 40.0 + 5.0 * number as f64;
             Camera::look_at(*eye, *target, DVec3::NEG_Y, fov_y, (64, 48)).unwrap()
@@ -257,7 +257,7 @@ mod tests {
     }
 
     /// Places that are far apart, close together, and turned by nearly half a turn.
-    fn uneven() -> Vec<View> {
+    fn uneven() -> Vec<NamedView> {
         let at = DVec3::new;
         views(&[
             (at(0.0, 0.0, -4.0), DVec3::ZERO),
@@ -301,7 +301,9 @@ mod tests {
             let made = spline.views(2000);
             let apart: Vec<(f64, f64)> = made
                 .windows(2)
-                .map(|two| Key::of(&two[0].camera).apart(&Key::of(&two[1].camera)))
+                .map(|two| {
+                    Key::from_camera(&two[0].camera).apart(&Key::from_camera(&two[1].camera))
+                })
                 .collect();
             let whole = apart
                 .iter()

@@ -4,14 +4,14 @@ use std::path::PathBuf;
 
 use rara::{Channel, Picture, StoredPicture};
 
-use super::super::report::Frame;
+use super::super::report::FrameRecord;
 
 /// A picture that was drawn, and what it took.
 pub(in super::super) struct RenderedPicture {
     /// The line of the report.
-    pub(in super::super) frame: Frame,
+    pub(in super::super) frame: FrameRecord,
     /// The frames that it is made of, if they are several.
-    pub(in super::super) faces: Vec<Frame>,
+    pub(in super::super) faces: Vec<FrameRecord>,
     /// None where it goes nowhere.
     pub(in super::super) picture: Option<Pixels>,
     /// Beside its colours.
@@ -34,8 +34,8 @@ impl Pixels {
 }
 
 /// A frame whose picture is not written.
-impl From<Frame> for RenderedPicture {
-    fn from(frame: Frame) -> Self {
+impl From<FrameRecord> for RenderedPicture {
+    fn from(frame: FrameRecord) -> Self {
         Self {
             frame,
             faces: Vec::new(),
@@ -48,8 +48,8 @@ impl From<Frame> for RenderedPicture {
 /// The frames and files of a run, once all pictures are drawn.
 #[derive(Default)]
 pub(in super::super) struct WrittenPictures {
-    pub(in super::super) pictures: Vec<Frame>,
+    pub(in super::super) pictures: Vec<FrameRecord>,
     /// The frames that these are made of, where they are several each.
-    pub(in super::super) faces: Vec<Frame>,
+    pub(in super::super) faces: Vec<FrameRecord>,
     pub(in super::super) files: Vec<PathBuf>,
 }

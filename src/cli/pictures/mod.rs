@@ -15,14 +15,14 @@ use rara::{Error, HeadlessDesc, PngCompression, Settings};
 use serde_json::json;
 
 use super::failure::Failure;
-use super::film::{self, FilmArgs, Kind};
+use super::film::{self, FilmArgs, FilmFormat};
 use super::output::{self, counted, counted_are, say};
 use super::pattern::filled;
-use super::report::{Answer, Frame};
+use super::report::{Answer, FrameRecord};
 use super::scenes::SceneArgs;
 use super::values::{self, STANDARD};
 pub(super) use drawn::{Pixels, RenderedPicture};
-pub(super) use part::Part;
+pub(super) use part::RunShare;
 
 /// What becomes of pictures, and of what is measured.
 #[derive(Debug, Args)]
@@ -31,7 +31,7 @@ pub(super) struct PictureArgs {
     ///
     /// They are numbered as in the whole, so that N jobs draw all of them.
     #[arg(long, value_name = "K/N")]
-    part: Option<Part>,
+    part: Option<RunShare>,
     /// Leave out pictures whose files are there, whatever these show
     ///
     /// After an interruption the rest is drawn.
@@ -71,7 +71,7 @@ pub(super) fn needs_floats(output: Option<&Path>, what: &str) -> Result<(), Fail
 /// Where pictures go, checked before any work is done.
 pub(super) struct Destination<'a> {
     args: &'a PictureArgs,
-    place: Place,
+    place: OutputTarget,
     order: Option<&'a dyn Order>,
 }
 
@@ -84,19 +84,19 @@ pub(super) trait Order: Sync {
     fn begin(&self, number: usize, file: Option<&Path>) -> Result<bool, Failure>;
 
     /// Learns that a picture is there.
-    fn end(&self, number: usize, file: &Path, frame: &Frame) -> Result<(), Failure>;
+    fn end(&self, number: usize, file: &Path, frame: &FrameRecord) -> Result<(), Failure>;
 
     /// Learns which driver draws the next pictures.
     fn opened(&self, driver: &str);
 }
 
-enum Place {
+enum OutputTarget {
     Nowhere,
     /// Files by a pattern, or standard output.
     Files(PathBuf),
     /// frame_000.png and so on.
     Folder(PathBuf),
-    Film(Kind, PathBuf),
+    Film(FilmFormat, PathBuf),
 }
 
 /// A picture that is to be drawn, and its file.
@@ -143,10 +143,10 @@ impl PictureArgs {
         let place = self.place(output, several.is_some())?;
         self.check(&place, several.is_some())?;
         match &place {
-            Place::Nowhere => {}
-            Place::Folder(folder) => output::make_folder(folder)?,
-            Place::Files(pattern) => check_pattern(pattern, numbers, several)?,
-            Place::Film(kind, file) => self.film.check(*kind, file)?,
+            OutputTarget::Nowhere => {}
+            OutputTarget::Folder(folder) => output::make_folder(folder)?,
+            OutputTarget::Files(pattern) => check_pattern(pattern, numbers, several)?,
+            OutputTarget::Film(kind, file) => self.film.check(*kind, file)?,
         }
         Ok(Destination {
             args: self,
@@ -155,17 +155,17 @@ impl PictureArgs {
         })
     }
 
-    fn place(&self, output: Option<&Path>, several: bool) -> Result<Place, Failure> {
+    fn place(&self, output: Option<&Path>, several: bool) -> Result<OutputTarget, Failure> {
         let Some(output) = output else {
-            return Ok(Place::Nowhere);
+            return Ok(OutputTarget::Nowhere);
         };
         let is_folder = values::is_folder(output);
         match values::film_path(output.into()) {
             Ok(file) if !is_folder => {
                 let kind = self.film.kind(Some(output))?;
                 return Ok(match kind {
-                    Some(kind) => Place::Film(kind, file),
-                    None => Place::Files(file),
+                    Some(kind) => OutputTarget::Film(kind, file),
+                    None => OutputTarget::Files(file),
                 });
             }
             Err(why) if !is_folder && has_slot(output) => {
@@ -178,11 +178,11 @@ impl PictureArgs {
             let error = Error::format(output, "this is a folder; name a file in it");
             return Err(error.into());
         }
-        Ok(Place::Folder(output.to_owned()))
+        Ok(OutputTarget::Folder(output.to_owned()))
     }
 
     /// Refuses flags that have no meaning there.
-    fn check(&self, place: &Place, several: bool) -> Result<(), Failure> {
+    fn check(&self, place: &OutputTarget, several: bool) -> Result<(), Failure> {
         let flags = [
             ("--part", self.part.is_some()),
             ("--skip-existing", self.skip_existing),
@@ -196,8 +196,8 @@ impl PictureArgs {
             given.map(|(flag, _)| *flag)
         };
         let is_stream = match place {
-            Place::Files(file) | Place::Film(_, file) => file == Path::new(STANDARD),
-            Place::Nowhere | Place::Folder(_) => false,
+            OutputTarget::Files(file) | OutputTarget::Film(_, file) => file == Path::new(STANDARD),
+            OutputTarget::Nowhere | OutputTarget::Folder(_) => false,
         };
         if let Some(flag) = is_given(&["--json", "--json-lines"]).filter(|_| is_stream) {
             return Err(Failure::Usage(format!(
@@ -205,16 +205,16 @@ impl PictureArgs {
             )));
         }
         let whole = is_given(&["--part", "--skip-existing", "--json-lines"]);
-        if let (Place::Film(..), Some(flag)) = (place, whole) {
+        if let (OutputTarget::Film(..), Some(flag)) = (place, whole) {
             return Err(Failure::Usage(format!(
                 "{flag} goes picture by picture, and a film is whole: leave it out, or name numbered pictures, as -o \
                  frame_{{:04}}.png"
             )));
         }
         let is_png = match place {
-            Place::Folder(_) => true,
-            Place::Files(file) => is_stream || output::ends_in(file, "png"),
-            Place::Nowhere | Place::Film(..) => false,
+            OutputTarget::Folder(_) => true,
+            OutputTarget::Files(file) => is_stream || output::ends_in(file, "png"),
+            OutputTarget::Nowhere | OutputTarget::Film(..) => false,
         };
         if self.png.is_some() && !is_png {
             return Err(Failure::Usage(
@@ -266,7 +266,7 @@ impl Destination<'_> {
     /// The settings for pictures that go there: on black where nothing else is said and they can have no transparency.
     pub(super) fn settings(&self, settings: Settings) -> Settings {
         match &self.place {
-            Place::Film(kind, _) if kind.is_opaque() && settings.background.is_none() => {
+            OutputTarget::Film(kind, _) if kind.is_opaque() && settings.background.is_none() => {
                 film::say_opaque();
                 settings.background(Some([0.0; 3]))
             }
@@ -276,10 +276,10 @@ impl Destination<'_> {
 
     fn file(&self, number: usize, name: &str) -> Option<PathBuf> {
         match &self.place {
-            Place::Nowhere => None,
-            Place::Files(pattern) => Some(filled(pattern, number, name)),
-            Place::Folder(folder) => Some(folder.join(format!("frame_{number:03}.png"))),
-            Place::Film(_, file) => Some(file.clone()),
+            OutputTarget::Nowhere => None,
+            OutputTarget::Files(pattern) => Some(filled(pattern, number, name)),
+            OutputTarget::Folder(folder) => Some(folder.join(format!("frame_{number:03}.png"))),
+            OutputTarget::Film(_, file) => Some(file.clone()),
         }
     }
 
@@ -296,7 +296,7 @@ impl Destination<'_> {
         (width, height): (u32, u32),
     ) -> Plan {
         let (frames, numbers) = match self.place {
-            Place::Film(..) => (numbers.len(), &[0][..]),
+            OutputTarget::Film(..) => (numbers.len(), &[0][..]),
             _ => (1, numbers),
         };
         let called = |&number: &usize| {
@@ -340,12 +340,12 @@ impl Destination<'_> {
             PictureJob { number, what, file }
         };
         let mut planned: Vec<_> = all.into_iter().map(of_one).collect();
-        if !matches!(self.place, Place::Film(..)) {
+        if !matches!(self.place, OutputTarget::Film(..)) {
             check_distinct(&planned, called)?;
         }
         let whole = planned.len();
         if let Some(part) = self.args.part {
-            planned = part.of(planned);
+            planned = part.take_from(planned);
             if planned.is_empty() {
                 say(format_args!(
                     "note: part {part} of {} is empty",
@@ -353,7 +353,7 @@ impl Destination<'_> {
                 ));
             }
         }
-        if let (Some(order), false) = (self.order, matches!(self.place, Place::Film(..))) {
+        if let (Some(order), false) = (self.order, matches!(self.place, OutputTarget::Film(..))) {
             planned.retain(|one| order.wants(one.number));
         }
         let before = planned.len();
@@ -388,7 +388,7 @@ impl Destination<'_> {
         mut sizes: impl Iterator<Item = (u32, u32)>,
     ) -> Result<(u32, u32), Failure> {
         match self.place {
-            Place::Film(..) => film::one_size(sizes),
+            OutputTarget::Film(..) => film::one_size(sizes),
             _ => Ok(sizes.next().unwrap_or((0, 0))),
         }
     }

@@ -4,13 +4,13 @@ use std::fmt;
 use std::str::FromStr;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(in super::super) struct Part {
+pub(in super::super) struct RunShare {
     /// From 1.
     number: u32,
     of: u32,
 }
 
-impl FromStr for Part {
+impl FromStr for RunShare {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
@@ -25,9 +25,9 @@ impl FromStr for Part {
     }
 }
 
-impl Part {
+impl RunShare {
     /// Those of all that are in this part. Parts follow each other, and differ by one at most.
-    pub(super) fn of<T>(self, mut all: Vec<T>) -> Vec<T> {
+    pub(super) fn take_from<T>(self, mut all: Vec<T>) -> Vec<T> {
         let count = all.len() as u128;
         // At most as large as the count.
         let end = |part: u32| (count * u128::from(part) / u128::from(self.of)) as usize;
@@ -42,7 +42,7 @@ impl Part {
     }
 }
 
-impl fmt::Display for Part {
+impl fmt::Display for RunShare {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         write!(f, "{}/{}", self.number, self.of)
     }
@@ -57,7 +57,7 @@ mod tests {
         for count in [0, 1, 7, 10, 1000] {
             for of in [1, 3, 10, 11] {
                 let parts: Vec<Vec<u32>> = (1..=of)
-                    .map(|number| Part { number, of }.of((0..count).collect()))
+                    .map(|number| RunShare { number, of }.take_from((0..count).collect()))
                     .collect();
                 assert!(parts.concat().into_iter().eq(0..count), "{count} by {of}");
                 let sizes = parts.iter().map(Vec::len);
@@ -69,9 +69,9 @@ mod tests {
 
     #[test]
     fn parts_are_read_as_they_are_written() {
-        assert_eq!("3/10".parse(), Ok(Part { number: 3, of: 10 }));
+        assert_eq!("3/10".parse(), Ok(RunShare { number: 3, of: 10 }));
         assert_eq!(
-            "1/1".parse().map(|part: Part| part.to_string()),
+            "1/1".parse().map(|part: RunShare| part.to_string()),
             Ok("1/1".into())
         );
         for wrong in [
@@ -85,7 +85,7 @@ mod tests {
             "1/2/3",
             "1/4294967296",
         ] {
-            assert!(wrong.parse::<Part>().is_err(), "{wrong}");
+            assert!(wrong.parse::<RunShare>().is_err(), "{wrong}");
         }
     }
 }

@@ -6,11 +6,11 @@ use std::thread;
 
 use super::super::failure::Failure;
 use super::super::film::Film;
-use super::super::output::{self, Progress};
+use super::super::output::{self, ProgressLine};
 use super::super::profile::Profile;
 use super::super::report::Answer;
 use super::drawn::{RenderedPicture, WrittenPictures};
-use super::{Destination, PictureJob, Place};
+use super::{Destination, OutputTarget, PictureJob};
 
 /// The most memory of pictures that wait to be encoded, bytes.
 const WAITING: u64 = 256 << 20;
@@ -47,7 +47,7 @@ impl Destination<'_> {
         mut draw: impl FnMut(&PictureJob<T>) -> Result<RenderedPicture, Failure>,
     ) -> Result<WrittenPictures, Failure> {
         let film = match &self.place {
-            Place::Film(kind, file) => {
+            OutputTarget::Film(kind, file) => {
                 if let Some(order) = self.order
                     && !order.begin(0, Some(file))?
                 {
@@ -88,7 +88,7 @@ impl Destination<'_> {
                     }
                 });
             }
-            let mut progress = Progress::new(what);
+            let mut progress = ProgressLine::new(what);
             let mut turn = 0;
             for (index, one) in planned.iter().enumerate() {
                 progress.update(index as u64, planned.len() as u64);

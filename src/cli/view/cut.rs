@@ -9,7 +9,7 @@ use crate::clip::joined;
 
 /// Expressions of shapes, which of the shapes is held, and whether they cut at all.
 #[derive(Debug, Clone)]
-pub(super) struct Cut {
+pub(super) struct ClipEditor {
     pub(super) on: bool,
     /// At least one; shapes come before larger expressions, as flags are read.
     expressions: Vec<Expression>,
@@ -23,7 +23,7 @@ pub(super) struct Cut {
     centre: DVec3,
 }
 
-impl Cut {
+impl ClipEditor {
     /// A clip as it was typed; without one a plane through the middle of the scene, which is off at first.
     pub(super) fn new(clip: Vec<Expression>, op: ClipOp, centre: DVec3) -> Self {
         let mut expressions = clip;
@@ -184,9 +184,9 @@ mod tests {
 
     const CENTRE: DVec3 = DVec3::new(1.0, 2.0, 3.0);
 
-    fn cut(typed: &[&str]) -> Cut {
+    fn cut(typed: &[&str]) -> ClipEditor {
         let typed = typed.iter().map(|text| text.parse().unwrap());
-        Cut::new(typed.collect(), ClipOp::And, CENTRE)
+        ClipEditor::new(typed.collect(), ClipOp::And, CENTRE)
     }
 
     #[test]

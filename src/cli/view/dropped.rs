@@ -21,7 +21,7 @@ pub(super) enum DroppedFile {
 
 impl DroppedFile {
     /// Finds out what a file is, and reads it unless it is a scene.
-    pub(super) fn of(path: &Path) -> Result<Self, Failure> {
+    pub(super) fn open(path: &Path) -> Result<Self, Failure> {
         let facts = std::fs::metadata(path).map_err(Error::io(path))?;
         if !facts.is_file() && !facts.is_dir() {
             let message = "this is neither a file nor a folder; drop one of these";
@@ -81,7 +81,9 @@ fn kind(path: &Path) -> JsonKind {
         // No list is so long, but the cameras of many pictures may be.
         return JsonKind::Cameras;
     }
-    json_kind::document(path).map_or(JsonKind::Scene, |document| JsonKind::of(&document))
+    json_kind::document(path).map_or(JsonKind::Scene, |document| {
+        JsonKind::from_document(&document)
+    })
 }
 
 #[cfg(test)]
@@ -100,22 +102,22 @@ mod tests {
             path
         };
         let clip = put("clip.json", "\u{feff}[{\"normal\":[0,0,1],\"d\":2}]");
-        assert!(matches!(DroppedFile::of(&clip), Ok(DroppedFile::Clip(all)) if all.len() == 1));
-        let scene = |path: &Path| matches!(DroppedFile::of(path), Ok(DroppedFile::Scene));
+        assert!(matches!(DroppedFile::open(&clip), Ok(DroppedFile::Clip(all)) if all.len() == 1));
+        let scene = |path: &Path| matches!(DroppedFile::open(path), Ok(DroppedFile::Scene));
         assert!(scene(&put("a.splat", "")) && scene(&put("broken.json", "{")));
         assert!(scene(&put("meta.json", "{}")) && scene(&sog));
         assert_eq!(kind(&folder.join("colmap")), JsonKind::Cameras);
         assert_eq!(kind(&folder.join("colmap/cameras.txt")), JsonKind::Cameras);
-        let error = DroppedFile::of(&folder.join("none.ply"))
+        let error = DroppedFile::open(&folder.join("none.ply"))
             .unwrap_err()
             .to_string();
         assert!(error.contains("none.ply"), "{error}");
         let empty = put("empty.json", "[]");
-        let error = DroppedFile::of(&empty).unwrap_err().to_string();
+        let error = DroppedFile::open(&empty).unwrap_err().to_string();
         assert!(error.contains("no clip in it"), "{error}");
         let planes = vec![r#"{"normal":[0,0,1],"d":2}"#; MOST_SURFACES + 1].join(",");
         let many = put("many.json", &format!("[{planes}]"));
-        let error = DroppedFile::of(&many).unwrap_err().to_string();
+        let error = DroppedFile::open(&many).unwrap_err().to_string();
         assert!(
             error.contains("many.json") && error.contains("65 537 surfaces"),
             "{error}"
@@ -126,7 +128,7 @@ mod tests {
     #[cfg(unix)]
     #[test]
     fn nobody_waits_for_a_device() {
-        let error = DroppedFile::of(Path::new("/dev/null"))
+        let error = DroppedFile::open(Path::new("/dev/null"))
             .unwrap_err()
             .to_string();
         assert!(error.contains("neither a file nor a folder"), "{error}");

@@ -118,7 +118,7 @@ mod tests {
     use crate::clip::ClipArgs;
     use crate::settings::SettingsArgs;
     use crate::view::action::GripAction;
-    use crate::view::cut::Cut;
+    use crate::view::cut::ClipEditor;
     use clap::{Args as _, FromArgMatches as _};
     use glam::{DVec2, DVec3};
     use rara::Plane;
@@ -149,8 +149,8 @@ mod tests {
         let settings = SettingsArgs::from_arg_matches(&matches).unwrap();
         let clip = ClipArgs::from_arg_matches(&matches).unwrap();
         let regions = clip.meant().unwrap();
-        let expressions = regions.of(&rara::Scene::default()).unwrap();
-        let cut = Cut::new(expressions, regions.op(), DVec3::ZERO);
+        let expressions = regions.expressions(&rara::Scene::default()).unwrap();
+        let cut = ClipEditor::new(expressions, regions.op(), DVec3::ZERO);
         let clips = Clips::new(cut, &[], DVec3::ZERO);
         (clips, settings.meant().unwrap())
     }
@@ -246,7 +246,11 @@ mod tests {
             .precision(Precision::default().beam_switch(1e20 / 7.0));
         let typed = vec![Expression::Shape(plane.into())];
         let plane_clip = typed[0].clip();
-        let clips = Clips::new(Cut::new(typed, ClipOp::And, DVec3::ZERO), &[], DVec3::ZERO);
+        let clips = Clips::new(
+            ClipEditor::new(typed, ClipOp::And, DVec3::ZERO),
+            &[],
+            DVec3::ZERO,
+        );
         let (read, again) = meant(&flags(&camera(), &clips, &settings));
         assert_eq!(again, settings);
         assert_eq!(read.frame.clip(), plane_clip);
@@ -323,7 +327,7 @@ mod tests {
             let count = 1 + numbers.below(4);
             let typed = (0..count).map(|_| numbers.tree(3)).collect();
             let op = [ClipOp::And, ClipOp::Or][numbers.below(2) as usize];
-            let mut clips = Clips::new(Cut::new(typed, op, DVec3::ZERO), &[], DVec3::ZERO);
+            let mut clips = Clips::new(ClipEditor::new(typed, op, DVec3::ZERO), &[], DVec3::ZERO);
             for step in 0..6 {
                 let pixels = 40.0 * DVec2::new(numbers.any(), numbers.any());
                 let action = match step {

@@ -9,7 +9,7 @@ use super::outlines;
 use super::overlay::OverlayScene;
 use super::scenery::{Manner, Scenery};
 use super::stage::Viewer;
-use super::text::Progress;
+use super::text::ProgressBar;
 use super::title;
 use crate::failure::Failure;
 use crate::settings;
@@ -122,7 +122,7 @@ impl Viewer {
             mode: self.manner.settings.mode,
             stats: self.windowed.stats(),
             progress: match self.compiling {
-                true => Some(("compiling shaders".into(), Progress::Moving(0.5))),
+                true => Some(("compiling shaders".into(), ProgressBar::Moving(0.5))),
                 false => self.loading.as_ref().map(Loading::progress),
             },
             size,

@@ -7,9 +7,9 @@ use rara::clip::Parameter;
 use rara::{Camera, Placement, Projection, Shape};
 
 use super::action::GripAction;
-use super::cut::Cut;
+use super::cut::ClipEditor;
 
-impl Cut {
+impl ClipEditor {
     /// Does what is asked of the held shape, in a scene of this radius.
     pub(super) fn act(&mut self, action: GripAction, camera: &Camera, radius: f64) {
         match action {
@@ -147,10 +147,10 @@ mod tests {
     ];
 
     /// A clip of which a shape is held that is alone, outside, or within an expression.
-    fn cuts(text: &str) -> [Cut; 3] {
+    fn cuts(text: &str) -> [ClipEditor; 3] {
         let nested = format!("any(sphere:0,0,0,1, not(all({text}, plane:1,0,0,0)))");
         [text.into(), format!("!{text}"), nested].map(|typed| {
-            let mut cut = Cut::new(vec![typed.parse().unwrap()], ClipOp::And, CENTRE);
+            let mut cut = ClipEditor::new(vec![typed.parse().unwrap()], ClipOp::And, CENTRE);
             if typed.starts_with("any") {
                 cut.next();
             }
@@ -158,8 +158,8 @@ mod tests {
         })
     }
 
-    fn plane(normal: DVec3) -> Cut {
-        let mut cut = Cut::new(Vec::new(), ClipOp::And, CENTRE);
+    fn plane(normal: DVec3) -> ClipEditor {
+        let mut cut = ClipEditor::new(Vec::new(), ClipOp::And, CENTRE);
         cut.align(normal);
         cut
     }
@@ -185,7 +185,7 @@ mod tests {
     }
 
     /// The numbers of all its shapes. Quaternions of either sign are one rotation.
-    fn numbers(cut: &Cut) -> Vec<f64> {
+    fn numbers(cut: &ClipEditor) -> Vec<f64> {
         let mut numbers = Vec::new();
         for shape in cut.expressions().iter().flat_map(Expression::shapes) {
             let text = shape.to_string();
@@ -202,7 +202,7 @@ mod tests {
         numbers
     }
 
-    fn apart(a: &Cut, b: &Cut) -> f64 {
+    fn apart(a: &ClipEditor, b: &ClipEditor) -> f64 {
         let (a, b) = (numbers(a), numbers(b));
         assert_eq!(a.len(), b.len());
         a.iter()
@@ -296,7 +296,7 @@ mod tests {
         let mut cut = plane(-DVec3::Z);
         cut.go(0.5, &camera);
         let middle = cut.middle();
-        let towards = |cut: &Cut| normal(&cut.shape()).unwrap();
+        let towards = |cut: &ClipEditor| normal(&cut.shape()).unwrap();
         cut.tilt(DVec2::new(30.0, 0.0), &camera);
         assert!(cut.shape().clip().surfaces[0].distance(middle).abs() < 1e-12);
         // The normal pointed at the eye; now also to the right.

@@ -19,7 +19,7 @@ enum Change<T> {
 
 impl<T: PartialEq> Change<T> {
     /// The change of layers of which this is listed and that is shown.
-    fn of(layers: Vec<(T, T)>) -> Self {
+    fn from_layers(layers: Vec<(T, T)>) -> Self {
         if layers.iter().all(|(listed, shown)| listed == shown) {
             return Self::None;
         }
@@ -55,8 +55,8 @@ fn changes<'a>(layers: &'a [NamedLayer], section: &[Expression]) -> Vec<Changes<
         }
         all.push(Changes {
             name,
-            visible: Change::of(visible),
-            clip: Change::of(clip),
+            visible: Change::from_layers(visible),
+            clip: Change::from_layers(clip),
         });
     }
     all
@@ -103,14 +103,14 @@ pub(super) fn note(layers: &[NamedLayer], section: &[Expression]) -> Option<Stri
 mod tests {
     use crate::scenes::LoadedLayer;
     use crate::view::action::{Edit, GripAction, Which};
-    use crate::view::cut::Cut;
+    use crate::view::cut::ClipEditor;
     use crate::view::layers::Clips;
     use crate::view::layers::tests::{camera, layer};
     use glam::DVec3;
     use rara::ClipOp;
 
     fn clips(layers: &[LoadedLayer]) -> Clips {
-        let frame = Cut::new(Vec::new(), ClipOp::And, DVec3::ZERO);
+        let frame = ClipEditor::new(Vec::new(), ClipOp::And, DVec3::ZERO);
         Clips::new(frame, layers, DVec3::ZERO)
     }
 

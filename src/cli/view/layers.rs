@@ -4,7 +4,7 @@ use glam::DVec3;
 use rara::{Camera, ClipOp, Windowed};
 
 use super::action::{Edit, GripAction, Which};
-use super::cut::Cut;
+use super::cut::ClipEditor;
 use super::layer_flags;
 use super::shots::quoted;
 use crate::failure::Failure;
@@ -15,7 +15,7 @@ use rara::clip::Expression;
 /// The frame's clip and the layers.
 #[derive(Debug, Clone)]
 pub(super) struct Clips {
-    pub(super) frame: Cut,
+    pub(super) frame: ClipEditor,
     /// By name: layers of one name that begin alike go together, as flags name them.
     layers: Vec<NamedLayer>,
     /// The number of the layer whose own clip is edited; `None` for the frame's.
@@ -35,7 +35,7 @@ pub(super) struct NamedLayer {
     places: Vec<usize>,
     pub(super) visible: bool,
     /// Their own clip; one that is off leaves them whole. `None` where the frame's holds.
-    own: Option<Cut>,
+    own: Option<ClipEditor>,
     /// What is listed of each of them, with clips as they can be edited.
     pub(super) listed: Vec<ListedState>,
 }
@@ -48,7 +48,7 @@ impl NamedLayer {
 }
 
 impl Clips {
-    pub(super) fn new(frame: Cut, loaded: &[LoadedLayer], centre: DVec3) -> Self {
+    pub(super) fn new(frame: ClipEditor, loaded: &[LoadedLayer], centre: DVec3) -> Self {
         let mut layers: Vec<NamedLayer> = Vec::new();
         for (place, layer) in loaded.iter().enumerate() {
             let is_alike = |other: &&mut NamedLayer| {
@@ -99,7 +99,7 @@ impl Clips {
     }
 
     /// The clip that is edited, if it is there: a layer may have none of its own.
-    pub(super) fn edited(&self) -> Option<&Cut> {
+    pub(super) fn edited(&self) -> Option<&ClipEditor> {
         match self.edited {
             None => Some(&self.frame),
             Some(layer) => self.layers[layer].own.as_ref(),
@@ -107,9 +107,9 @@ impl Clips {
     }
 
     /// Every clip that cuts something of what is shown.
-    pub(super) fn in_force(&self) -> impl Iterator<Item = &Cut> {
+    pub(super) fn in_force(&self) -> impl Iterator<Item = &ClipEditor> {
         let shown = || self.layers.iter().filter(|layer| layer.visible);
-        let is_cut = |own: &Cut| own.on && !self.frame.section().is_empty();
+        let is_cut = |own: &ClipEditor| own.on && !self.frame.section().is_empty();
         let frame = shown()
             .any(|layer| layer.own.as_ref().is_none_or(is_cut))
             .then_some(&self.frame);
@@ -121,9 +121,9 @@ impl Clips {
     pub(super) fn replace(&mut self, clip: Vec<Expression>) {
         self.changed = true;
         match self.edited {
-            None => self.frame = Cut::new(clip, self.frame.op(), self.centre),
+            None => self.frame = ClipEditor::new(clip, self.frame.op(), self.centre),
             Some(layer) => {
-                self.layers[layer].own = Some(Cut::new(clip, ClipOp::And, self.centre));
+                self.layers[layer].own = Some(ClipEditor::new(clip, ClipOp::And, self.centre));
             }
         }
     }
@@ -217,7 +217,7 @@ impl Clips {
 
     /// A few words for the title: which shape of which clip is held, and which layers are hidden.
     pub(super) fn words(&self) -> Option<String> {
-        let held = self.edited().filter(|cut| cut.on).map(Cut::words);
+        let held = self.edited().filter(|cut| cut.on).map(ClipEditor::words);
         let mut words = Vec::new();
         match self.edited {
             None => words.extend(held),
@@ -264,15 +264,15 @@ impl Clips {
 }
 
 /// A layer's own clip as it can be edited.
-fn own(clip: &LayerClip, centre: DVec3) -> Cut {
+fn own(clip: &LayerClip, centre: DVec3) -> ClipEditor {
     match clip {
         LayerClip::Whole => whole(centre),
-        LayerClip::Region(region) => Cut::new(vec![region.clone()], ClipOp::And, centre),
+        LayerClip::Region(region) => ClipEditor::new(vec![region.clone()], ClipOp::And, centre),
     }
 }
 
 /// What a layer's own clip is as it has been edited.
-fn layer_clip(own: &Cut) -> LayerClip {
+fn layer_clip(own: &ClipEditor) -> LayerClip {
     match own.expressions() {
         [] => LayerClip::Whole,
         [only] => LayerClip::Region(only.clone()),
@@ -281,8 +281,8 @@ fn layer_clip(own: &Cut) -> LayerClip {
 }
 
 /// A clip that is off.
-fn whole(centre: DVec3) -> Cut {
-    Cut::new(Vec::new(), ClipOp::And, centre)
+fn whole(centre: DVec3) -> ClipEditor {
+    ClipEditor::new(Vec::new(), ClipOp::And, centre)
 }
 
 #[cfg(test)]
@@ -298,7 +298,7 @@ pub(super) mod tests {
     fn clips(layers: &[LoadedLayer]) -> Clips {
         let frame = vec!["sphere:0,0,0,1".parse().unwrap()];
         Clips::new(
-            Cut::new(frame, ClipOp::And, DVec3::ZERO),
+            ClipEditor::new(frame, ClipOp::And, DVec3::ZERO),
             layers,
             DVec3::ZERO,
         )

@@ -12,7 +12,7 @@ use rara::scene::Bounds;
 
 use super::layers::Clips;
 use super::scenery::Scenery;
-use super::text::Progress;
+use super::text::ProgressBar;
 use super::{Begin, name};
 use crate::camera::{FOV_Y, Views};
 use crate::failure::Failure;
@@ -61,8 +61,8 @@ impl LoadedWindow {
     ) -> Result<Self, Failure> {
         let scene = loaded.scene();
         let middle = Bounds::of(&scene).centre();
-        let visible = Visible::of(&scene);
-        let (views, cut) = begin.of((&scene, &visible), up, middle)?;
+        let visible = Visible::from_scene(&scene);
+        let (views, cut) = begin.cameras((&scene, &visible), up, middle)?;
         let scenery = Scenery {
             name: name(&scene),
             views,
@@ -104,7 +104,8 @@ impl Loading {
         let work = move || {
             let outcome = panic::catch_unwind(AssertUnwindSafe(|| {
                 load(&mut |reading| {
-                    *told.lock().unwrap_or_else(PoisonError::into_inner) = Now::of(reading);
+                    *told.lock().unwrap_or_else(PoisonError::into_inner) =
+                        Now::from_reading(reading);
                 })
             }));
             // Nobody would end the waiting otherwise.
@@ -134,15 +135,15 @@ impl Loading {
     }
 
     /// What is done now, and how far it has come.
-    pub(super) fn progress(&self) -> (String, Progress) {
+    pub(super) fn progress(&self) -> (String, ProgressBar) {
         let now = self.now.lock().unwrap_or_else(PoisonError::into_inner);
         let progress = match now.share {
-            Some(share) => Progress::Share(share),
+            Some(share) => ProgressBar::Share(share),
             None => {
                 // As often as the bar moves, so that it is drawn no more often.
                 let ticks = self.begun.elapsed().as_millis() / TICK.as_millis();
                 let time = ticks as f64 * TICK.as_secs_f64();
-                Progress::Moving((time / ROUND).fract())
+                ProgressBar::Moving((time / ROUND).fract())
             }
         };
         (now.what.clone(), progress)
@@ -150,7 +151,7 @@ impl Loading {
 }
 
 impl Now {
-    fn of(reading: Reading<'_>) -> Self {
+    fn from_reading(reading: Reading<'_>) -> Self {
         let Reading {
             path,
             file: (number, files),
@@ -180,7 +181,7 @@ mod tests {
 
     fn reading(file: (usize, usize), bytes: (u64, u64)) -> Now {
         let path = Path::new("folder/a b.ply");
-        Now::of(Reading { path, file, bytes })
+        Now::from_reading(Reading { path, file, bytes })
     }
 
     #[test]

@@ -32,7 +32,7 @@ use clap::Args;
 use glam::DVec3;
 use rara::{Camera, ClipOp, Scene};
 
-use self::cut::Cut;
+use self::cut::ClipEditor;
 use self::input::KEYS;
 use self::loading::LoadedWindow;
 use self::scenery::Manner;
@@ -81,7 +81,7 @@ Scripts, a line an action, # begins a comment; each is on the screen before the 
   keys on, off                            numbers on, off
   drop FILE                               repeat N ACTION
   quit"))]
-pub(super) struct View {
+pub(super) struct ViewCommand {
     /// The screenshots' files, .png or .exr; {} becomes their number
     #[arg(short, long, value_name = "OUT", default_value = "view_{}.png", value_parser = values::picture_file())]
     output: PathBuf,
@@ -117,7 +117,7 @@ enum Begin {
     Section(Sections),
 }
 
-impl View {
+impl ViewCommand {
     pub(super) fn run(self) -> Result<(), Failure> {
         let settings = self.frame.settings.meant()?;
         let clip = &self.frame.clip;
@@ -195,12 +195,12 @@ impl Begin {
     }
 
     /// The cameras, each with its up direction, and the clip, once the scene is known.
-    fn of(
+    fn cameras(
         self,
         (scene, visible): (&Scene<'_>, &Visible),
         up: Option<DVec3>,
         centre: DVec3,
-    ) -> Result<(Vec<(Camera, DVec3)>, Cut), Failure> {
+    ) -> Result<(Vec<(Camera, DVec3)>, ClipEditor), Failure> {
         // Where a file or a section places the camera, up is what is up in its own picture.
         let own_up = |camera: &Camera| -camera.rotation.row(1);
         match self {
@@ -211,15 +211,15 @@ impl Begin {
                     .into_iter()
                     .map(|view| view.camera);
                 let views = views.map(|camera| (camera, up.unwrap_or(own_up(&camera))));
-                let cut = Cut::new(regions.of(scene)?, regions.op(), centre);
+                let cut = ClipEditor::new(regions.expressions(scene)?, regions.op(), centre);
                 Ok((views.collect(), cut))
             }
             Self::Section(sections) => {
                 let mut views = Vec::new();
-                let mut cut = Cut::new(Vec::new(), ClipOp::And, centre);
-                for section in sections.of(scene)? {
+                let mut cut = ClipEditor::new(Vec::new(), ClipOp::And, centre);
+                for section in sections.sections(scene)? {
                     views.push((section.view.camera, own_up(&section.view.camera)));
-                    cut = Cut::of_section(section.own, section.others, centre);
+                    cut = ClipEditor::of_section(section.own, section.others, centre);
                 }
                 Ok((views, cut))
             }

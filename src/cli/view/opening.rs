@@ -41,7 +41,7 @@ impl Viewer {
             self.dirty |= self.overlay.hush();
         }
         for file in files {
-            match DroppedFile::of(&file) {
+            match DroppedFile::open(&file) {
                 Ok(DroppedFile::Scene) => scenes.push(file),
                 Ok(other) => self.beside.push(other),
                 Err(failure) => self.warn(&failure),
@@ -127,7 +127,7 @@ impl Viewer {
             if !self
                 .scenery
                 .clips
-                .replace_of(layer, &LayerClip::of(named.clip))
+                .replace_of(layer, &LayerClip::from_expression(named.clip))
             {
                 let text = format!("the file has a clip for '{layer}', and no layer is called so");
                 self.overlay.warn(text);

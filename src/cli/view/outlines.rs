@@ -46,7 +46,7 @@ pub(super) fn lines(clips: &Clips, camera: &Camera, (centre, radius): (DVec3, f6
 mod tests {
     use super::*;
     use crate::view::action::{Edit, Which};
-    use crate::view::cut::Cut;
+    use crate::view::cut::ClipEditor;
     use crate::view::layers::tests::layer;
     use rara::ClipOp;
 
@@ -57,7 +57,7 @@ mod tests {
             layer("bone", true, Some("box:0,0,0,1,1,1")),
         ];
         Clips::new(
-            Cut::new(frame, ClipOp::Or, DVec3::ZERO),
+            ClipEditor::new(frame, ClipOp::Or, DVec3::ZERO),
             &layers,
             DVec3::ZERO,
         )

@@ -7,7 +7,7 @@ use rara::{FrameStats, Mode, Panel, Picture};
 use super::input::KEYS;
 use super::layers::Clips;
 use super::numbers;
-use super::text::{self, Progress, Type};
+use super::text::{self, ProgressBar, Type};
 use crate::{settings, times};
 
 const HINT: &str = "H: keys   M: numbers   drop a file to open it";
@@ -44,7 +44,7 @@ pub(super) struct Content {
     numbers: Vec<String>,
     hint: bool,
     message: Option<(String, bool)>,
-    progress: Option<(String, Progress)>,
+    progress: Option<(String, ProgressBar)>,
 }
 
 /// What the overlay says of the picture.
@@ -54,7 +54,7 @@ pub(super) struct OverlayScene<'a> {
     pub(super) mode: Mode,
     pub(super) stats: Option<&'a FrameStats>,
     /// The work that the window waits for.
-    pub(super) progress: Option<(String, Progress)>,
+    pub(super) progress: Option<(String, ProgressBar)>,
     /// The window's size, px, and how many of them are as long as one on an ordinary screen.
     pub(super) size: (u32, u32),
     pub(super) scale_factor: f64,
@@ -242,13 +242,17 @@ fn laid_out(content: &Content) -> Vec<Panel> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::view::cut::Cut;
+    use crate::view::cut::ClipEditor;
     use glam::DVec3;
     use rara::{ClipOp, PassTime};
 
     fn clips(shapes: &[&str]) -> Clips {
         let shapes = shapes.iter().map(|text| text.parse().unwrap()).collect();
-        Clips::new(Cut::new(shapes, ClipOp::And, DVec3::ZERO), &[], DVec3::ZERO)
+        Clips::new(
+            ClipEditor::new(shapes, ClipOp::And, DVec3::ZERO),
+            &[],
+            DVec3::ZERO,
+        )
     }
 
     fn seen<'a>(clips: &'a Clips, size: (u32, u32)) -> OverlayScene<'a> {
@@ -350,7 +354,7 @@ mod tests {
             overlay.set_keys(Some(true));
             overlay.warn("what is wrong ".repeat(20));
             let content = overlay.content(&OverlayScene {
-                progress: Some(("reading a.ply".into(), Progress::Share(0.5))),
+                progress: Some(("reading a.ply".into(), ProgressBar::Share(0.5))),
                 ..seen(&clips, size)
             });
             for panel in laid_out(&content) {

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use rara::{Camera, ClipOp, Settings, ShFormat};
 
-use super::cut::Cut;
+use super::cut::ClipEditor;
 use super::layers::Clips;
 use super::shots::Shots;
 use super::viewpoint::Viewpoint;
@@ -40,7 +40,7 @@ impl Scenery {
     pub(super) fn nothing(up: DVec3) -> rara::Result<Self> {
         let ahead = up.normalize().any_orthonormal_vector();
         let camera = Camera::look_at(-ahead, DVec3::ZERO, up, 50.0, (64, 64))?;
-        let cut = Cut::new(Vec::new(), ClipOp::And, DVec3::ZERO);
+        let cut = ClipEditor::new(Vec::new(), ClipOp::And, DVec3::ZERO);
         Ok(Self {
             name: String::new(),
             views: vec![(camera, up)],

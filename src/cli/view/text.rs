@@ -106,13 +106,13 @@ pub(super) fn sheet(
 
 /// How far something has come, as a share of it, or the place from 0 to 1 of what moves where nobody knows.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Progress {
+pub(super) enum ProgressBar {
     Share(f64),
     Moving(f64),
 }
 
 /// A line of text with a bar below it.
-pub(super) fn bar(text: &str, progress: Progress, of: Type, room: (u32, u32)) -> Picture {
+pub(super) fn bar(text: &str, progress: ProgressBar, of: Type, room: (u32, u32)) -> Picture {
     let (width, height) = of.size(text.chars().count().max(40), 1);
     let mut paper = paper((width, height + (BAR + MARGIN) * of.dot), room);
     of.write(&mut paper, 0, text, INK);
@@ -120,8 +120,8 @@ pub(super) fn bar(text: &str, progress: Progress, of: Type, room: (u32, u32)) ->
     let track = paper.width.saturating_sub(2 * margin);
     let along = |share: f64| margin + (share.clamp(0.0, 1.0) * f64::from(track)).round() as u32;
     let (from, to) = match progress {
-        Progress::Share(share) => (0.0, share),
-        Progress::Moving(at) => (at * (1.0 + RUNNER) - RUNNER, at * (1.0 + RUNNER)),
+        ProgressBar::Share(share) => (0.0, share),
+        ProgressBar::Moving(at) => (at * (1.0 + RUNNER) - RUNNER, at * (1.0 + RUNNER)),
     };
     let rows = height..height + BAR * of.dot;
     fill(&mut paper, along(0.0)..along(1.0), rows.clone(), TRACK);
@@ -252,12 +252,12 @@ mod tests {
             filled as f64 / (320 * BAR) as f64
         };
         for share in [0.0, 0.25, 0.5, 1.0] {
-            assert_eq!(filled(Progress::Share(share)), share);
+            assert_eq!(filled(ProgressBar::Share(share)), share);
         }
-        assert_eq!(filled(Progress::Share(f64::INFINITY)), 1.0);
-        assert_eq!(filled(Progress::Share(f64::NAN)), 0.0);
-        assert_eq!(filled(Progress::Moving(0.5)), RUNNER);
-        assert_eq!(filled(Progress::Moving(0.0)), 0.0);
-        assert_eq!(filled(Progress::Moving(1.0)), 0.0);
+        assert_eq!(filled(ProgressBar::Share(f64::INFINITY)), 1.0);
+        assert_eq!(filled(ProgressBar::Share(f64::NAN)), 0.0);
+        assert_eq!(filled(ProgressBar::Moving(0.5)), RUNNER);
+        assert_eq!(filled(ProgressBar::Moving(0.0)), 0.0);
+        assert_eq!(filled(ProgressBar::Moving(1.0)), 0.0);
     }
 }

@@ -47,8 +47,8 @@ impl BenchReport {
     pub fn chart(&self) -> Scatter {
         let of = |kind: ChoiceKind| {
             let rows = self.rows.iter();
-            let rows =
-                rows.filter(move |row| row.name != "none" && ChoiceKind::of(row.name) == kind);
+            let rows = rows
+                .filter(move |row| row.name != "none" && ChoiceKind::from_name(row.name) == kind);
             rows.map(|row| (row.times.cost, row.measures.l1, row.name))
         };
         let kinds = [ChoiceKind::Way, ChoiceKind::Law, ChoiceKind::Precision];
@@ -73,7 +73,7 @@ enum ChoiceKind {
 }
 
 impl ChoiceKind {
-    fn of(name: &str) -> Self {
+    fn from_name(name: &str) -> Self {
         match name {
             "hard" | "rara, paper" | "rara, released" | "rara" | "exact" => Self::Way,
             _ if name.contains("law") || name.contains("affine") => Self::Law,

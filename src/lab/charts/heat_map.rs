@@ -15,7 +15,7 @@ pub enum Colours {
 }
 
 impl Colours {
-    fn of(self, value: f64) -> RGBColor {
+    fn colour(self, value: f64) -> RGBColor {
         match self {
             Self::Diverging(most) => colours::diverging(value / most),
             Self::Sequential(low, high) => colours::sequential((value - low) / (high - low)),
@@ -104,7 +104,7 @@ impl HeatMap {
             area.draw(&Rectangle::new(corners, colours::GRID))?;
             return canvas::write(area, "\u{2013}", at, Anchor::Middle, 12, colours::FAINT);
         }
-        let colour = self.colours.of(value);
+        let colour = self.colours.colour(value);
         area.draw(&Rectangle::new(corners, colour.filled()))?;
         let text = format!("{value:.*}", self.decimals);
         // What is rounded to 0 has no sign.
@@ -125,7 +125,10 @@ impl HeatMap {
             let value = low + (high - low) * f64::from(step) / f64::from(STEPS - 1);
             let edge = |step: i32| left + width * step / STEPS;
             let corners = [(edge(step), top), (edge(step + 1), top + 12)];
-            area.draw(&Rectangle::new(corners, self.colours.of(value).filled()))?;
+            area.draw(&Rectangle::new(
+                corners,
+                self.colours.colour(value).filled(),
+            ))?;
         }
         for part in 0..=2 {
             let value = low + (high - low) * f64::from(part) / 2.0;
@@ -155,7 +158,7 @@ mod tests {
             colours: Colours::Diverging(7.0),
             decimals: 2,
         };
-        let read = Read::of("heat_map", &map.svg());
+        let read = Read::parse("heat_map", &map.svg());
         read.has(&[
             "Preference by case",
             "Metric",

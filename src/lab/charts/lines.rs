@@ -21,7 +21,7 @@ impl Lines {
             let names: Vec<_> = self.series.iter().map(|s| s.name.as_str()).collect();
             let area = canvas::legend(area, Key::Line, &names)?;
             let points = self.series.iter().flat_map(|series| &series.points);
-            let plot = Plot::of(&area, (&self.x, &self.y), points)?;
+            let plot = Plot::measured(&area, (&self.x, &self.y), points)?;
             let has_place = |p: &Point| self.x.takes(p.x) && self.y.takes(p.y);
             for (number, series) in self.series.iter().enumerate() {
                 let runs = series.points.split(|point| !has_place(point));
@@ -58,7 +58,7 @@ mod tests {
                 Series::new("hard & fast", [[1e3, 0.5], [1e6, 4.0]]),
             ],
         };
-        let read = Read::of("lines", &lines.svg());
+        let read = Read::parse("lines", &lines.svg());
         read.has(&[
             "Time by size",
             "Gaussians",

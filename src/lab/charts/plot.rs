@@ -28,7 +28,7 @@ pub(super) struct Plot<'a> {
 
 impl<'a> Plot<'a> {
     /// The plot of two measured axes with these points on it.
-    pub(super) fn of<'p>(
+    pub(super) fn measured<'p>(
         area: &Area<'a>,
         (x, y): (&Axis, &Axis),
         points: impl Iterator<Item = &'p Point> + Clone,

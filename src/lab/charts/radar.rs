@@ -106,7 +106,7 @@ mod tests {
             radius: Axis::linear("Signed preference").between(0.0, 4.0),
             series: vec![Values::new("exact", [4.0, 2.0, 2.0, f64::NAN])],
         };
-        let read = Read::of("radar", &radar.svg());
+        let read = Read::parse("radar", &radar.svg());
         read.has(&names);
         read.has(&["Mean preferences", "Signed preference", "exact", "4"]);
         let circles = read.circles("#0072B2");

@@ -25,9 +25,9 @@ impl Scatter {
             let names: Vec<_> = self.series.iter().map(|s| s.name.as_str()).collect();
             let area = canvas::legend(area, Key::Mark, &names)?;
             let points = self.series.iter().flat_map(|series| &series.points);
-            let plot = Plot::of(&area, (&self.x, &self.y), points)?;
+            let plot = Plot::measured(&area, (&self.x, &self.y), points)?;
             let has_place = |p: &&Point| self.x.takes(p.x) && self.y.takes(p.y);
-            let mut labels = Labels::of(&plot);
+            let mut labels = Labels::new(&plot);
             labels.taken.extend(self.draw_front(&plot)?);
             for (number, series) in self.series.iter().enumerate() {
                 for point in series.points.iter().filter(has_place) {
@@ -82,7 +82,7 @@ struct Labels {
 }
 
 impl Labels {
-    fn of(plot: &Plot<'_>) -> Self {
+    fn new(plot: &Plot<'_>) -> Self {
         let (width, height) = plot.area.dim_in_pixel();
         Self {
             taken: Vec::new(),
@@ -150,7 +150,7 @@ mod tests {
 
     #[test]
     fn every_point_and_label_is_there_and_zeros_lie_below_the_break() {
-        let read = Read::of("scatter", &scatter().svg());
+        let read = Read::parse("scatter", &scatter().svg());
         read.has(&[
             "exact",
             "affine",

@@ -9,7 +9,7 @@ pub(super) struct Read {
 
 impl Read {
     /// The chart, which must be well-formed; a folder in `RARA_CHARTS` gets a copy to look at.
-    pub(super) fn of(name: &str, svg: &str) -> Self {
+    pub(super) fn parse(name: &str, svg: &str) -> Self {
         Document::parse(svg).expect("well-formed XML");
         if let Ok(folder) = std::env::var("RARA_CHARTS") {
             std::fs::write(format!("{folder}/{name}.svg"), svg).expect("a copy");

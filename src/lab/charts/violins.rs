@@ -144,7 +144,7 @@ mod tests {
                 Values::new("All the same", [2.0, 2.0]),
             ],
         };
-        let read = Read::of("violins", &violins.svg());
+        let read = Read::parse("violins", &violins.svg());
         read.has(&[
             "Preferences",
             "Flatness",

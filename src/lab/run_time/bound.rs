@@ -23,7 +23,7 @@ pub(super) fn measure(run: &mut Run<'_>, world: &World, numbers: Measurements) -
         return Ok(());
     }
     let (camera, settings) = (world.camera(0, run.options.size())?, in_mode(mode));
-    let mut numbers = numbers.of([camera.width, camera.height], "auto");
+    let mut numbers = numbers.for_pictures([camera.width, camera.height], "auto");
     let (mut whole, mut sorts) = (run.headless(world)?, Headless::new(&run.options.device)?);
     // The same centres with Gaussians that nobody sees: all that is left of a frame is its sort.
     let mut keys = world.scene.clone();

@@ -14,7 +14,7 @@ const WIDTH: u32 = 123;
 /// Compares every mode and raster path with the picture in double precision.
 pub(super) fn measure(run: &mut Run<'_>, world: &World, numbers: Measurements) -> Result<()> {
     let (camera, clip) = (world.camera(1, WIDTH)?, world.keeping(0.5)?);
-    let mut numbers = numbers.of([camera.width, camera.height], "");
+    let mut numbers = numbers.for_pictures([camera.width, camera.height], "");
     let mut headless = Headless::new(&run.options.device)?;
     headless.load(&world.scene)?;
     let mut rasters = rasters(&headless);

@@ -26,7 +26,7 @@ pub(super) fn measure(run: &mut Run<'_>, world: &World, numbers: Measurements) -
             let settings = in_mode(Mode::Exact).raster(rasters[index].1);
             timed(&mut headless, &camera, &clip, &settings)
         })?;
-        let mut numbers = numbers.of(SIZE.into(), how);
+        let mut numbers = numbers.for_pictures(SIZE.into(), how);
         for ((name, _), frames) in rasters.iter().zip(&frames) {
             numbers.add_frames(name, frames);
         }

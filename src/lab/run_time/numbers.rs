@@ -59,7 +59,7 @@ impl Measurements {
     }
 
     /// Those of the same scene in other pictures.
-    pub(super) fn of(&self, size: [u32; 2], raster: &'static str) -> Self {
+    pub(super) fn for_pictures(&self, size: [u32; 2], raster: &'static str) -> Self {
         Self {
             scene: self.scene.clone(),
             size,
@@ -188,7 +188,7 @@ mod tests {
     #[test]
     fn rows_of_a_table_stand_where_each_column_has_them() {
         let world = World::made("general", Kind::General, 3);
-        let mut numbers = Measurements::new("passes", &world, [8, 4]).of([6, 5], "tiles");
+        let mut numbers = Measurements::new("passes", &world, [8, 4]).for_pictures([6, 5], "tiles");
         for (column, rows) in [("none", ["sort", "bin"]), ("hard", ["clip", "sort"])] {
             for row in rows {
                 numbers.add(column, row, "ms", vec![3.0, 1.0, 2.0]);

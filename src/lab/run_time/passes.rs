@@ -34,7 +34,7 @@ pub(super) fn measure(run: &mut Run<'_>, world: &World, numbers: Measurements) -
         let Camera { width, height, .. } = world.camera(0, width)?;
         let measured: Vec<_> = variants.iter().zip(&frames).collect();
         for of_raster in measured.chunk_by(|a, b| a.0.0 == b.0.0) {
-            let mut numbers = numbers.of([width, height], of_raster[0].0.0.0);
+            let mut numbers = numbers.for_pictures([width, height], of_raster[0].0.0.0);
             let none = of_raster.iter().find(|((_, mode), _)| mode.1 == Mode::None);
             for ((_, (mode, _)), frames) in of_raster {
                 numbers.add_frames(mode, frames);

@@ -15,7 +15,7 @@ const STEPS: u32 = 12;
 pub(super) fn measure(run: &mut Run<'_>, world: &World, numbers: Measurements) -> Result<()> {
     let mut headless = run.headless(world)?;
     let camera = world.camera(0, run.options.size())?;
-    let mut numbers = numbers.of([camera.width, camera.height], "auto");
+    let mut numbers = numbers.for_pictures([camera.width, camera.height], "auto");
     // The field of view becomes narrower, so that the part fills the picture.
     let nearer = |t: f64| {
         let by = 1000.0_f64.powf(t);

@@ -91,7 +91,7 @@ pub fn run(headless: &mut Headless, regime: &Regime, every: usize) -> Result<Reg
         missed: 0,
         not_finite: 0,
         miscounted: 0,
-        forms: FORMS.map(|(form, ..)| FormRow::of(form)).to_vec(),
+        forms: FORMS.map(|(form, ..)| FormRow::from_form(form)).to_vec(),
         target: limit.map_or(TARGET, |limit: Limit| limit.weight),
         least_psnr: limit.map_or(PICTURE_PSNR, |limit| limit.psnr),
         reason: limit.map(|limit| limit.reason),
@@ -255,7 +255,7 @@ fn apart(a: &Picture, b: &Picture, whole: &Picture) -> f64 {
 }
 
 impl FormRow {
-    fn of(form: &'static str) -> Self {
+    fn from_form(form: &'static str) -> Self {
         Self {
             form,
             weight: 0.0,

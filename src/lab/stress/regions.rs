@@ -13,28 +13,28 @@ const THIN: &str = "24 bits place both sides of a region that is a thousandth as
 
 pub fn regimes() -> Vec<Regime> {
     vec![
-        Regime::new("spheres", || of(50, PLAIN, ROUND, "sphere:0,0,0,1")),
+        Regime::new("spheres", || cases(50, PLAIN, ROUND, "sphere:0,0,0,1")),
         Regime::new("outside of a sphere", || {
-            of(51, PLAIN, ROUND, "!sphere:0,0,0,1")
+            cases(51, PLAIN, ROUND, "!sphere:0,0,0,1")
         }),
         Regime::new("a sphere that is smaller than a splat", || {
-            of(52, PLAIN, [5.0, 20.0], "sphere:0.1,0,0,0.02")
+            cases(52, PLAIN, [5.0, 20.0], "sphere:0.1,0,0,0.02")
         }),
         Regime::new("a sphere that a splat of 300 px is in", || {
-            of(53, PLAIN, [100.0, 300.0], "sphere:0.2,0.1,0,1")
+            cases(53, PLAIN, [100.0, 300.0], "sphere:0.2,0.1,0,1")
         }),
         Regime::new("a sphere of radius 1e6", || {
-            of(54, PLAIN, ROUND, "sphere:599999.94,0,799999.92,1000000")
+            cases(54, PLAIN, ROUND, "sphere:599999.94,0,799999.92,1000000")
         }),
         Regime::new("a sphere in a world at 1e4", || {
             let there = Setup {
                 centre: DVec3::new(1e4, -1e4, 1e4),
                 ..PLAIN
             };
-            of(55, there, ROUND, "sphere:10000,-10000,10000,1")
+            cases(55, there, ROUND, "sphere:10000,-10000,10000,1")
         }),
         Regime::new("ellipsoids, aspect 1e3", || {
-            of(
+            cases(
                 56,
                 PLAIN,
                 ROUND,
@@ -43,29 +43,29 @@ pub fn regimes() -> Vec<Regime> {
         })
         .limited(2e-3, 60.0, THIN),
         Regime::new("a thin cylinder", || {
-            of(57, PLAIN, ROUND, "cylinder:-1,-0.3,0,1,0.3,0,0.003")
+            cases(57, PLAIN, ROUND, "cylinder:-1,-0.3,0,1,0.3,0,0.003")
         }),
         Regime::new("the seams of capsules", || {
-            of(58, PLAIN, ROUND, "capsule:-0.1,0,0,0.1,0.05,0,0.6")
+            cases(58, PLAIN, ROUND, "capsule:-0.1,0,0,0.1,0.05,0,0.6")
         }),
         Regime::new("the tip of a cone", || {
-            of(59, PLAIN, ROUND, "cone:0,0,0,0.05,0.2,0.1,0.1")
+            cases(59, PLAIN, ROUND, "cone:0,0,0,0.05,0.2,0.1,0.1")
         }),
         Regime::new("edges and corners of a box", || {
             let small = "box:0,0,0,0.1,0.08,0.06,0.9,0.2,0.1,0.3";
-            of(60, PLAIN, ROUND, small)
+            cases(60, PLAIN, ROUND, small)
         }),
         Regime::new("spheres that touch", || {
             let touching = "any(sphere:-0.3,0,0,0.3, sphere:0.3,0,0,0.3)";
-            of(61, PLAIN, ROUND, touching)
+            cases(61, PLAIN, ROUND, touching)
         }),
         Regime::new("a lens", || {
             let lens = "all(sphere:-0.99,0,0,1, sphere:0.99,0,0,1)";
-            of(62, PLAIN, ROUND, lens)
+            cases(62, PLAIN, ROUND, lens)
         }),
         Regime::new("a shell thinner than a pixel", || {
             let shell = "all(sphere:0,0,0,1, !sphere:0,0,0,0.999)";
-            of(63, PLAIN, ROUND, shell)
+            cases(63, PLAIN, ROUND, shell)
         }),
         Regime::new("a region and its complement", || {
             let all = "any(sphere:0,0,0,1, not(sphere:0,0,0,1), plane:1,0,0,-9)";
@@ -74,7 +74,7 @@ pub fn regimes() -> Vec<Regime> {
         Regime::new("five shapes nested", || {
             let nested = "all(sphere:0,0,0,1, any(plane:1,0.2,0,0, all(!cylinder:-1,0,0,1,0.2,0,0.3, \
                           any(box:0,0,0,0.5,0.5,2, !sphere:0,0.2,0,0.4))))";
-            of(65, PLAIN, ROUND, nested)
+            cases(65, PLAIN, ROUND, nested)
         }),
         Regime::new("sixty spheres", || {
             let mut random = Random::new(66);
@@ -83,7 +83,7 @@ pub fn regimes() -> Vec<Regime> {
                 format!("sphere:{},{},{},0.3", at.x, at.y, at.z)
             });
             let all = format!("any({})", spheres.collect::<Vec<_>>().join(", "));
-            of(67, PLAIN, ROUND, &all)
+            cases(67, PLAIN, ROUND, &all)
         }),
     ]
 }
@@ -92,7 +92,7 @@ pub fn regimes() -> Vec<Regime> {
 const ROUND: [f64; 2] = [0.2, 20.0];
 
 /// Splats of this size strewn over the border of a region that cuts them.
-fn of(seed: u64, stage: Setup, pixels: [f64; 2], region: &str) -> Vec<Case> {
+fn cases(seed: u64, stage: Setup, pixels: [f64; 2], region: &str) -> Vec<Case> {
     seen(seed, stage, pixels, region, region)
 }
 

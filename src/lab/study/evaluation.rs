@@ -77,7 +77,7 @@ pub struct Sample {
 }
 
 impl Sample {
-    fn of(values: Vec<f64>) -> Self {
+    fn from_values(values: Vec<f64>) -> Self {
         let positive = values.iter().filter(|&&v| v > 0.0).count() as f64;
         Self {
             mean: statistics::mean(&values),
@@ -133,8 +133,8 @@ fn result(metric: Metric, participants: &[Participant]) -> MetricResult {
     let means = each.iter().filter_map(|values| statistics::mean(values));
     MetricResult {
         metric,
-        participants: Sample::of(means.collect()),
-        answers: Sample::of(each.concat()),
+        participants: Sample::from_values(means.collect()),
+        answers: Sample::from_values(each.concat()),
     }
 }
 

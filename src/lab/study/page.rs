@@ -160,7 +160,7 @@ pub fn write(
         });
     }
     progress(cases.len(), cases.len());
-    let data = Data::of(options, drawing.id, shown);
+    let data = Data::new(options, drawing.id, shown);
     data.write(folder)?;
     Ok(StudyPage {
         page: folder.join("index.html"),
@@ -170,7 +170,7 @@ pub fn write(
 }
 
 impl Data {
-    fn of(options: &StudyOptions, mut id: Id, cases: Vec<CasePictures>) -> Self {
+    fn new(options: &StudyOptions, mut id: Id, cases: Vec<CasePictures>) -> Self {
         let method = if options.method == Mode::Rara {
             "rara"
         } else {

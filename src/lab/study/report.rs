@@ -35,7 +35,7 @@ pub fn create(answers: &[PathBuf], folder: &Path, options: &ReportOptions) -> Re
 /// Writes the report of an evaluation, as [`create`] says.
 pub fn write(evaluation: &Evaluation, folder: &Path) -> Result<()> {
     fs::create_dir_all(folder).map_err(Error::io(folder))?;
-    let charts = Charts::of(evaluation);
+    let charts = Charts::from_evaluation(evaluation);
     let results = tables::metrics(evaluation);
     let html = Html {
         evaluation,
@@ -87,7 +87,7 @@ struct Charts {
 }
 
 impl Charts {
-    fn of(evaluation: &Evaluation) -> Self {
+    fn from_evaluation(evaluation: &Evaluation) -> Self {
         let names: Vec<String> = Metric::ALL.map(|metric| metric.name().into()).into();
         let method = &evaluation.study.method;
         let signed = format!("Signed preference, \u{2212}7 (hard) to 7 ({method})");

@@ -124,7 +124,9 @@ impl Apart {
     }
 }
 
-fn over(picture: &Picture, background: [f32; 3]) -> Picture {
+/// A picture over a background, for those who look at it: a viewer that does not know of transparency would show what is
+/// hardly there as solid.
+pub(super) fn over(picture: &Picture, background: [f32; 3]) -> Picture {
     opaque(picture, |[r, g, b, a]| {
         let [behind_r, behind_g, behind_b] = background.map(|c| (1.0 - a) * c);
         [r + behind_r, g + behind_g, b + behind_b]
@@ -219,5 +221,16 @@ impl Compare {
         };
         let (a, b) = (self.a.display(), self.b.display());
         Err(rara::Error::Invalid(format!("{a} and {b} differ: {missed}")).into())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_transparent_shows_the_background() {
+        let made = over(&Picture::filled(1, 1, [0.25, 0.0, 0.0, 0.5]), [1.0; 3]);
+        assert_eq!(made.at(0, 0), [0.75, 0.5, 0.5, 1.0]);
     }
 }

@@ -7,10 +7,11 @@ use rara::{
     Camera, Clip, ClipOp, Decay, ExactForm, FrameStats, Mode, Picture, Plane, Scene, Settings,
 };
 use rara::{reference, scene};
-use rara_lab::measure;
+use rara_lab::frames::in_turn;
+use rara_lab::{maps, measure};
 
 use super::combine::{Combine, combine};
-use super::compare::Measures;
+use super::compare::{Measures, over};
 use super::failure::Failure;
 use super::frame::ComparisonArgs;
 use super::framing;
@@ -48,6 +49,9 @@ pub(super) struct Demo {
 /// Frames of each mode, whose median is shown.
 const FRAMES: u32 = 5;
 
+/// Colour behind the pictures.
+const PAPER: [f32; 3] = [1.0; 3];
+
 struct Shot {
     mode: Mode,
     settings: Settings,
@@ -83,7 +87,9 @@ impl Demo {
         for settings in &all {
             session.warm_up([(&camera, &clip, settings)])?;
         }
-        let frames = in_turns(&mut session, &camera, &clip, &all)?;
+        let frames = in_turn(FRAMES..=FRAMES, all.len(), |way, _| {
+            session.one(&camera, &clip, &all[way])
+        })?;
         let mut shots = Vec::new();
         for (settings, frames) in all.into_iter().zip(&frames) {
             let (picture, _) = session.picture(&camera, &clip, &settings)?;
@@ -98,13 +104,14 @@ impl Demo {
         let compiled = output::compiled(session.first_use_ms(usual), session.has_kept());
         session.close()?;
         for Shot { mode, picture, .. } in &shots {
-            sheet::opaque(picture).save(self.output.join(format!("{}.png", name(*mode))))?;
+            over(picture, PAPER).save(self.output.join(format!("{}.png", name(*mode))))?;
         }
         let labelled = shots.iter();
-        let labelled = labelled.map(|shot| (name(shot.mode), sheet::opaque(&shot.picture)));
+        let labelled = labelled.map(|shot| (name(shot.mode), over(&shot.picture, PAPER)));
         let labelled: Vec<_> = labelled.collect();
         let [_, hard, _, exact] = [0, 1, 2, 3].map(|index| &shots[index].picture);
-        let corner = sheet::where_they_differ(hard, exact);
+        let piece = hard.width.max(hard.height).div_ceil(sheet::ZOOM);
+        let corner = maps::worst_square(hard, exact, piece)?;
         sheet::sheet(&labelled, corner).save(self.output.join("sheet.png"))?;
         compiled.into_iter().for_each(say);
         print_frames(&shots);
@@ -113,22 +120,6 @@ impl Demo {
         }
         Ok(())
     }
-}
-
-/// Frames of each way of drawing, one of each in turn, so that what else the machine does meets all of them.
-fn in_turns(
-    session: &mut Session,
-    camera: &Camera,
-    clip: &Clip,
-    all: &[Settings],
-) -> rara::Result<Vec<Vec<FrameStats>>> {
-    let mut frames = vec![Vec::new(); all.len()];
-    for _ in 0..FRAMES {
-        for (settings, frames) in all.iter().zip(&mut frames) {
-            frames.push(session.one(camera, clip, settings)?);
-        }
-    }
-    Ok(frames)
 }
 
 /// The scene that is drawn if no file is given.

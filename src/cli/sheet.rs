@@ -9,14 +9,12 @@ const GAP: u32 = 4;
 /// Colour of what is between the pictures.
 const MARGIN: [f32; 4] = [0.25, 0.25, 0.25, 1.0];
 const INK: [u8; 3] = [255; 3];
-/// Colour behind pictures that have no background.
-const PAPER: [f32; 3] = [1.0; 3];
 /// How far the lower row is magnified.
-const ZOOM: u32 = 6;
+pub(super) const ZOOM: u32 = 6;
 
 /// Pictures of one size with their labels, and under each the same piece of it, magnified; `corner` is the piece's
-/// top left.
-pub(super) fn sheet(pictures: &[(String, Picture)], corner: (u32, u32)) -> Picture {
+/// left and top.
+pub(super) fn sheet(pictures: &[(String, Picture)], corner: [u32; 2]) -> Picture {
     let Some((_, first)) = pictures.first() else {
         return Picture::default();
     };
@@ -36,46 +34,12 @@ pub(super) fn sheet(pictures: &[(String, Picture)], corner: (u32, u32)) -> Pictu
         for y in 0..height {
             for x in 0..width {
                 set(&mut sheet, left + x, band + y, picture.at(x, y));
-                let near = picture.at(corner.0 + x / ZOOM, corner.1 + y / ZOOM);
+                let near = picture.at(corner[0] + x / ZOOM, corner[1] + y / ZOOM);
                 set(&mut sheet, left + x, band + height + GAP + y, near);
             }
         }
     }
     sheet
-}
-
-/// The picture on paper, for those who look at it: a viewer that does not know of transparency would show what is hardly
-/// there as solid.
-pub(super) fn opaque(picture: &Picture) -> Picture {
-    let mut opaque = picture.clone();
-    for pixel in &mut opaque.pixels {
-        let [.., alpha] = *pixel;
-        for (channel, paper) in pixel.iter_mut().zip(PAPER) {
-            *channel += (1.0 - alpha) * paper;
-        }
-        pixel[3] = 1.0;
-    }
-    opaque
-}
-
-/// The top left of the piece in which two pictures of one size differ most; the piece is as large as a sheet magnifies.
-pub(super) fn where_they_differ(a: &Picture, b: &Picture) -> (u32, u32) {
-    let (width, height) = (a.width.div_ceil(ZOOM), a.height.div_ceil(ZOOM));
-    let difference = |x: u32, y: u32| -> f32 {
-        let pairs = a.at(x, y).into_iter().zip(b.at(x, y));
-        pairs.map(|(p, q)| (p - q).abs()).sum()
-    };
-    let total = |&(left, top): &(u32, u32)| -> f32 {
-        (top..top + height)
-            .flat_map(|y| (left..left + width).map(move |x| difference(x, y)))
-            .sum()
-    };
-    let places = |size: u32, piece: u32| (0..=size - piece).step_by((piece / 4).max(1) as usize);
-    let corners = places(a.height, height)
-        .flat_map(|top| places(a.width, width).map(move |left| (left, top)));
-    let best = corners.map(|corner| (total(&corner), corner));
-    best.max_by(|p, q| p.0.total_cmp(&q.0))
-        .map_or((0, 0), |(_, corner)| corner)
 }
 
 fn set(picture: &mut Picture, x: u32, y: u32, pixel: [f32; 4]) {
@@ -100,26 +64,11 @@ mod tests {
     }
 
     #[test]
-    fn the_piece_is_where_the_difference_is() {
-        let plain = Picture::filled(60, 48, [0.0; 4]);
-        let mut spotted = plain.clone();
-        set(&mut spotted, 33, 41, [1.0; 4]);
-        let (x, y) = where_they_differ(&plain, &spotted);
-        assert!((24..=33).contains(&x) && (34..=41).contains(&y), "{x} {y}");
-    }
-
-    #[test]
-    fn what_is_transparent_is_paper() {
-        let made = opaque(&Picture::filled(1, 1, [0.25, 0.0, 0.0, 0.5]));
-        assert_eq!(made.at(0, 0), [0.75, 0.5, 0.5, 1.0]);
-    }
-
-    #[test]
     fn pictures_stand_side_by_side_and_magnified_below() {
         let mut red = Picture::filled(12, 12, [1.0, 0.0, 0.0, 1.0]);
         set(&mut red, 5, 5, [0.0, 1.0, 0.0, 1.0]);
         let blue = Picture::filled(12, 12, [0.0, 0.0, 1.0, 1.0]);
-        let made = sheet(&[("x".into(), red), ("o".into(), blue)], (5, 5));
+        let made = sheet(&[("x".into(), red), ("o".into(), blue)], [5, 5]);
         assert_eq!((made.width, made.height), (28, 11 + 12 + 4 + 12));
         assert_eq!(made.at(0, 11), [1.0, 0.0, 0.0, 1.0]);
         assert_eq!(made.at(12, 11), MARGIN);

@@ -80,7 +80,7 @@ const ENOUGH: Duration = Duration::from_secs(30);
 /// Measures `count` things in turn, so that other work on the machine disturbs all of them alike: `one(thing, round)`; the
 /// results by thing, then by round. A round 0 comes first and its results are dropped: it compiles, allocates and fills
 /// caches.
-pub(crate) fn in_turn<T>(
+pub fn in_turn<T>(
     rounds: RangeInclusive<u32>,
     count: usize,
     mut one: impl FnMut(usize, u32) -> Result<T>,

@@ -11,8 +11,6 @@ use rara::ash::vk;
 use rara::gpu::WriteOnly;
 use rara::{Error, Result};
 
-use crate::text::c_string;
-
 /// The result of every function that can fail. After anything but RARA_OK rara_last_error_message says more.
 pub type RaraResult = i32;
 /// Done.
@@ -79,6 +77,11 @@ fn fail(code: RaraResult, message: &str) -> RaraResult {
     // This has no effect while the thread is ending.
     let _ = MESSAGE.try_with(|last| last.replace(message));
     code
+}
+
+/// A text with a NUL at its end and no other NUL.
+pub(crate) fn c_string(text: &str) -> CString {
+    CString::new(text.replace('\0', "\u{fffd}")).unwrap_or_default()
 }
 
 fn code(error: &Error) -> RaraResult {

@@ -169,6 +169,7 @@ pub unsafe extern "C" fn rara_device_adopt(
             let device = load_device(&instance, &desc)?;
             let queue = (desc.queue, desc.queue_family);
             let version = desc.api_version;
+            let lender = Lender::new(desc.allocate, desc.free, desc.allocator_user)?;
             let adopt = AdoptDesc::new(version, instance, desc.physical_device, device, queue)
                 .mesh_shader(desc.mesh_shader != 0)
                 .push_descriptor(desc.push_descriptor != 0)
@@ -176,7 +177,7 @@ pub unsafe extern "C" fn rara_device_adopt(
                 .shape(shape(&desc)?)
                 .debug_utils(desc.debug_utils != 0)
                 .pipeline_cache(desc.pipeline_cache)
-                .memory(Lender::from_desc(&desc)?.map(|lender| Arc::new(lender) as _));
+                .memory(lender.map(|lender| Arc::new(lender) as _));
             let release = Arc::new(Release {
                 release: desc.release,
                 user: desc.release_user,

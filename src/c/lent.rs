@@ -7,7 +7,6 @@ use rara::ash::vk;
 use rara::gpu::{LentMemory, Location, MemoryRequest, MemorySource};
 
 use crate::boundary::invalid;
-use crate::device::RaraAdoptDesc;
 
 /// Who reaches device memory.
 pub type RaraMemoryUse = u32;
@@ -81,13 +80,17 @@ unsafe impl Sync for Lender {}
 
 impl Lender {
     /// The functions of a description, if it has any.
-    pub(crate) fn from_desc(desc: &RaraAdoptDesc) -> rara::Result<Option<Self>> {
-        match (desc.allocate, desc.free) {
+    pub(crate) fn new(
+        allocate: RaraAllocate,
+        free: RaraFree,
+        user: *mut c_void,
+    ) -> rara::Result<Option<Self>> {
+        match (allocate, free) {
             (None, None) => Ok(None),
             (Some(allocate), Some(free)) => Ok(Some(Self {
                 allocate,
                 free,
-                user: desc.allocator_user,
+                user,
             })),
             (None, _) => {
                 invalid("desc->allocate is null, and desc->free is not: give both or none")

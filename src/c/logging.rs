@@ -8,8 +8,7 @@ use std::sync::{OnceLock, PoisonError, RwLock};
 
 use log::{LevelFilter, Log, Metadata, Record};
 
-use crate::boundary::{RaraResult, guard, invalid};
-use crate::text::c_string;
+use crate::boundary::{RaraResult, c_string, guard, invalid};
 
 /// How much a line of the log matters.
 pub type RaraLogLevel = u32;

@@ -5,11 +5,10 @@ use std::sync::Arc;
 
 use rara::{Clip, Layer, LayerState, Result, Scene, SceneBuffers, ShFormat};
 
-use crate::boundary::invalid;
+use crate::boundary::{c_string, invalid};
 use crate::gaussians::RaraGaussians;
 use crate::handles::{destroy, number};
 use crate::numbering::{Numbers, numbers};
-use crate::text::c_string;
 
 /// A scene in device memory: one layer or several. Several threads and renderers may use it at once, but nobody else
 /// while rara_scene_buffers_set_layer_state runs.

@@ -1,16 +1,11 @@
 //! Texts that cross the boundary.
 
-use std::ffi::{CStr, CString, c_char};
+use std::ffi::{CStr, c_char};
 use std::path::PathBuf;
 
 use rara::Result;
 
 use crate::boundary::{invalid, shared};
-
-/// A text with a NUL at its end and no other NUL.
-pub(crate) fn c_string(text: &str) -> CString {
-    CString::new(text.replace('\0', "\u{fffd}")).unwrap_or_default()
-}
 
 /// As much of a text as fits, in whole characters, and a NUL.
 pub(crate) fn fixed<const N: usize>(from: &str) -> [c_char; N] {

@@ -6,6 +6,7 @@ use rara_lab::paper::ablation;
 
 use super::failure::Failure;
 use super::frame::ComparisonArgs;
+use super::framing;
 use super::output::{self, say};
 use super::process;
 use super::scenes::SceneArgs;
@@ -35,7 +36,7 @@ impl Ablate {
         let views = views.single("an ablation")?;
         let loaded = self.scenes.load()?;
         let scene = loaded.scene();
-        let camera = views.views(&scene)?.remove(0).camera;
+        let camera = framing::boxed_views(views, &scene)?.remove(0).camera;
 
         process::make_drivers_folder();
         let mut headless = Headless::new(&self.common.device.meant())?;

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::failure::Failure;
-use super::scenes::SceneLayers;
+use super::scene_layers::SceneLayers;
 use super::training;
 
 /// What a text says of the layers of a name, or of all.

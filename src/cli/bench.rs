@@ -12,6 +12,7 @@ use super::camera::CameraArgs;
 use super::clip::ClipArgs;
 use super::demo::middle;
 use super::failure::Failure;
+use super::framing;
 use super::output::{self, ProgressLine, say};
 use super::process;
 use super::scenes::SceneArgs;
@@ -75,7 +76,7 @@ impl Bench {
         let mut loaded = self.scenes.load()?;
         clip.settle(&mut loaded)?;
         let scene = loaded.scene();
-        let camera = views.views(&scene)?.remove(0).camera;
+        let camera = framing::boxed_views(views, &scene)?.remove(0).camera;
         let clip = clip.clip(&scene)?;
         let clip = if clip.is_everything() {
             Clip::of([middle(&scene, &camera)?], ClipOp::And)

@@ -9,8 +9,7 @@ use rara::Camera;
 use super::failure::Failure;
 use super::json_kind::JsonKind;
 use super::lens::{Depths, Lens, Ortho, UP, ortho};
-use super::views::{Framing, picked};
-pub(super) use super::views::{NamedView, Views};
+use super::views::{Framing, NamedView, Views, picked};
 use super::{aspect, output, training, values};
 use rara::camera_files;
 

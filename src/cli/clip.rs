@@ -12,7 +12,7 @@ use super::json_kind::JsonKind;
 use super::output;
 use super::region::Region;
 use super::scene_file::LayerClip;
-use super::scenes::{LoadedLayer, SceneLayers};
+use super::scene_layers::{LoadedLayer, SceneLayers};
 use super::values;
 
 /// The clip: the parts to cut away.

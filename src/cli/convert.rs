@@ -12,7 +12,8 @@ use super::antialiasing;
 use super::clip::ClipArgs;
 use super::failure::Failure;
 use super::output::{self, counted, say};
-use super::scenes::{LoadedLayer, SceneArgs};
+use super::scene_layers::LoadedLayer;
+use super::scenes::SceneArgs;
 use super::select::{self, LayerRemains, Numbers};
 use super::values;
 

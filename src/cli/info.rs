@@ -7,7 +7,8 @@ use serde::Serialize;
 
 use super::failure::Failure;
 use super::output::{self, grouped};
-use super::scenes::{LoadedLayer, SceneArgs};
+use super::scene_layers::LoadedLayer;
+use super::scenes::SceneArgs;
 use rara::reference::classify::{Bands, bands};
 use rara::scene::Bounds;
 

@@ -7,7 +7,8 @@ use rara::{HeadlessDesc, Result, Scene, ShFormat};
 use super::failure::Failure;
 use super::profile::Profile;
 use super::scene_file::LayerClip;
-use super::scenes::{SceneArgs, SceneLayers};
+use super::scene_layers::SceneLayers;
+use super::scenes::SceneArgs;
 use super::session::Session;
 
 /// What the last command has left; nothing where a command runs by itself.

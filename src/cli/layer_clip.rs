@@ -5,7 +5,7 @@ use rara::Bounds;
 use super::failure::Failure;
 use super::region::Region;
 use super::scene_file::LayerClip;
-use super::scenes::SceneLayers;
+use super::scene_layers::SceneLayers;
 
 /// Does what the flags say, in their order.
 pub(super) fn apply(texts: &[String], loaded: &mut SceneLayers) -> Result<(), Failure> {

@@ -54,6 +54,7 @@ mod report;
 mod residual;
 mod save_camera;
 mod scene_file;
+mod scene_layers;
 mod scenes;
 mod section;
 mod select;

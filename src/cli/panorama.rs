@@ -12,8 +12,8 @@ use clap::Args;
 use glam::{DMat3, DVec3};
 use rara::{Camera, Picture, Projection};
 
-use super::camera::NamedView;
 use super::failure::Failure;
+use super::views::NamedView;
 
 /// A picture of all directions.
 #[derive(Debug, Args)]

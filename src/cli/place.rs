@@ -4,7 +4,7 @@ use glam::{DQuat, DVec3};
 use rara::Placement;
 
 use super::failure::Failure;
-use super::scenes::SceneLayers;
+use super::scene_layers::SceneLayers;
 use super::values;
 
 /// Does what the flags say, each in place of what was said of its layers before.

@@ -6,9 +6,9 @@ use clap::Args;
 use glam::DVec3;
 use rara::{Aov, Camera, Clip, Scene, Settings, Show};
 
-use super::camera::{NamedView, Views};
 use super::clip::Regions;
 use super::failure::Failure;
+use super::film;
 use super::frame::FrameArgs;
 use super::framing;
 use super::kept::SessionCache;
@@ -27,7 +27,7 @@ use super::section::{Section, SectionArgs, Sections};
 use super::session::{Repeat, Session};
 use super::settings::name;
 use super::slice::{Cut, SliceArgs, Slicer};
-use super::values;
+use super::views::{NamedView, Views};
 
 /// Draw one picture, one for each camera of a file, or a film
 #[derive(Debug, Args)]
@@ -57,7 +57,7 @@ pub(super) struct Render {
     /// {name} its name. A folder gets several pictures as frame_000.png and so on. A film holds all pictures;
     /// ffmpeg encodes all but .apng. --format says what standard output gets. The flag may be left out with --json
     /// and --json-lines.
-    #[arg(short, long, value_name = "OUT", value_parser = values::pictures_file())]
+    #[arg(short, long, value_name = "OUT", value_parser = film::pictures_file())]
     #[arg(required_unless_present_any = ["json", "json_lines"])]
     output: Option<PathBuf>,
     /// Channels of the .exr beside its colours

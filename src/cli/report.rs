@@ -8,12 +8,12 @@ use rara::gpu::{DeviceShape, NamedBytes};
 use rara::{Counts, FrameStats, Plane};
 use serde::Serialize;
 
-use super::camera::NamedView;
 use super::combine::{Combine, FrameSummary, combine};
 use super::output::{self, counted, grouped, say};
-use super::scenes::SceneLayers;
+use super::scene_layers::SceneLayers;
 use super::session::Session;
 use super::times;
+use super::views::NamedView;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Answer {

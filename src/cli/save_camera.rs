@@ -6,8 +6,9 @@ use clap::Args;
 use rara::camera_files::SavedCamera;
 use serde::Serialize;
 
-use super::camera::{HEADING, NamedView};
+use super::camera::HEADING;
 use super::output;
+use super::views::NamedView;
 
 /// The text of a file of a [`SavedCamera`], or of several.
 pub(super) fn text(document: &impl Serialize) -> String {

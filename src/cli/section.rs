@@ -6,13 +6,14 @@ use rara::clip::Expression;
 use rara::{Bounds, Clip, ClipOp, Gaussians, Plane, Scene};
 
 use super::axis::Axis;
-use super::camera::{CameraArgs, NamedView};
+use super::camera::CameraArgs;
 use super::clip::{ClipArgs, Regions, joined};
 use super::failure::Failure;
 use super::framing::Visible;
 use super::lens::upright;
 use super::slice::Cut;
 use super::values;
+use super::views::NamedView;
 
 /// The sections to draw. Each is a picture of its own.
 #[derive(Debug, Args)]

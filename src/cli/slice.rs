@@ -6,12 +6,12 @@ use rara::{
     Clip, Cue, Cues, Gaussians, HeadlessDesc, Layer, Picture, Plane, Raster, Scene, Settings, Show,
 };
 
-use super::camera::NamedView;
 use super::combine::FrameSummary;
 use super::failure::Failure;
 use super::session::{Repeat, Session};
 use super::settings::name;
 use super::values;
+use super::views::NamedView;
 
 /// What is shown of a section's plane.
 #[derive(Debug, Args)]

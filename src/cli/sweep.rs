@@ -8,7 +8,6 @@ use glam::DVec3;
 use rara::clip::Expression;
 use rara::{Bounds, Clip, Plane, Settings, Show};
 
-use super::camera::Views;
 use super::clip::{Regions, joined};
 use super::combine::FrameSummary;
 use super::failure::Failure;
@@ -24,6 +23,7 @@ use super::save_camera::SaveCameraArgs;
 use super::scenes::SceneArgs;
 use super::settings::name;
 use super::values;
+use super::views::Views;
 use rara::scene::extent_along;
 
 /// Move a plane across the scene, or any clip to another, in equal steps

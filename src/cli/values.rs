@@ -7,8 +7,6 @@ use std::str::FromStr;
 use clap::builder::{OsStringValueParser, TypedValueParser};
 use glam::{DQuat, DVec3};
 
-use super::film;
-
 /// `COUNT` numbers between commas, all finite.
 pub(super) fn numbers<const COUNT: usize>(text: &str) -> Result<[f64; COUNT], String> {
     let list = rara::clip::numbers(text).map_err(|error| error.to_string())?;
@@ -191,29 +189,11 @@ pub(super) fn is_folder(path: &Path) -> bool {
     name.last().is_some_and(is_separator) || (path != Path::new(STANDARD) && path.is_dir())
 }
 
-/// The file name of a picture or a film; its ending says the format.
-pub(super) fn film_path(path: OsString) -> Result<PathBuf, String> {
-    let is_film = film::FilmFormat::from_path(Path::new(&path)).is_some();
-    match is_film {
-        true => Ok(path.into()),
-        false => picture_path(path)
-            .map_err(|error| format!("{error}, a film's in .apng, {}", film::ENDINGS)),
-    }
-}
-
 /// In place of a file: standard input and standard output.
 pub(super) const STANDARD: &str = "-";
 
 pub(super) fn picture_file() -> impl TypedValueParser<Value = PathBuf> {
     OsStringValueParser::new().try_map(picture_path)
-}
-
-/// The parser of the file name of a picture or a film, or of a folder.
-pub(super) fn pictures_file() -> impl TypedValueParser<Value = PathBuf> {
-    OsStringValueParser::new().try_map(|path| match is_folder(Path::new(&path)) {
-        true => Ok(path.into()),
-        false => film_path(path),
-    })
 }
 
 #[cfg(test)]

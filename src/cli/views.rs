@@ -3,13 +3,12 @@
 use std::path::Path;
 
 use glam::DVec3;
+use rara::Camera;
 use rara::scene::Bounds;
-use rara::{Camera, Scene};
 
 use super::failure::Failure;
 use super::lens::{Depths, Lens, UP};
-use super::path::Orbit;
-use super::{framing, output, values};
+use super::values;
 
 /// A camera and what its file calls it.
 #[derive(Debug, Clone)]
@@ -29,6 +28,14 @@ pub(super) enum Views {
     Framed(Framing),
     /// An orbit round the scene that such a camera frames.
     Round(Orbit, Framing),
+}
+
+/// So many pictures on the way round.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Orbit {
+    /// Turns; the camera goes to its right, and where they are below zero to its left.
+    pub(super) turns: f64,
+    pub(super) frames: u32,
 }
 
 /// A camera that the scene places, but for what flags say of it.
@@ -73,7 +80,7 @@ impl Framing {
     }
 
     /// The camera that holds a box.
-    fn boxed(&self, bounds: &Bounds) -> Result<Camera, Failure> {
+    pub(super) fn boxed(&self, bounds: &Bounds) -> Result<Camera, Failure> {
         let camera = match self.eye {
             Some(_) => self.turned(bounds.centre())?,
             None => self.lens.frame(bounds, self.up, self.size)?,
@@ -127,22 +134,6 @@ impl Views {
         match self {
             Self::Given(_) => None,
             Self::Framed(framed) | Self::Round(_, framed) => Some(framed),
-        }
-    }
-
-    /// The camera of a command that measures, once the scene is known; one that frames the scene holds the box around it.
-    /// [`framing::views`] are nearer.
-    pub(super) fn views(self, scene: &Scene<'_>) -> Result<Vec<NamedView>, Failure> {
-        match self {
-            Self::Framed(framed) => {
-                framed.note.iter().cloned().for_each(output::say_afterwards);
-                Ok(vec![NamedView {
-                    number: 0,
-                    name: "framing".into(),
-                    camera: framed.boxed(&Bounds::of(scene))?,
-                }])
-            }
-            other => framing::views(other, scene),
         }
     }
 }
@@ -243,39 +234,5 @@ mod tests {
             let failure = numbers(none).expect_err(none).to_string();
             assert!(failure.contains("f has 5 cameras"), "{none}: {failure}");
         }
-    }
-
-    /// Figures of commands that measure rest on the camera that holds the box.
-    #[test]
-    fn commands_that_measure_keep_the_box_s_camera() {
-        let made = rara::scene::generate(rara::scene::Kind::General, 300, 1);
-        let bounds = Bounds::of(&made);
-        let plain = Framing {
-            up: UP,
-            lens: Lens::Perspective(50.0),
-            size: (64, 48),
-            depths: Depths::default(),
-            eye: None,
-            target: None,
-            note: None,
-        };
-        let camera = |framed: &Framing| {
-            let views = Views::Framed(framed.clone()).views(&(&made).into());
-            views.expect("a view").remove(0).camera
-        };
-        let boxed = Camera::frame(&bounds, UP, 50.0, (64, 48)).expect("a view");
-        assert_eq!(camera(&plain), boxed);
-        let aside = DVec3::new(1.0, 2.0, 3.0);
-        let moved = camera(&Framing {
-            target: Some(bounds.centre() + aside),
-            ..plain.clone()
-        });
-        assert!((moved.eye - boxed.eye).distance(aside) < 1e-12);
-        let from = camera(&Framing {
-            eye: Some(aside),
-            ..plain
-        });
-        let facing = Camera::look_at(aside, bounds.centre(), UP, 50.0, (64, 48));
-        assert_eq!(from, facing.expect("a view"));
     }
 }

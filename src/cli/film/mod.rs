@@ -5,9 +5,11 @@
 mod apng;
 mod video;
 
+use std::ffi::OsString;
 use std::io::{self, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
+use clap::builder::{OsStringValueParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use rara::files::Unfinished;
 use rara::{Error, Picture, Result};
@@ -15,7 +17,7 @@ use rara::{Error, Picture, Result};
 use super::failure::Failure;
 use super::output;
 use super::pattern::filled;
-use super::values::STANDARD;
+use super::values::{self, STANDARD};
 use apng::Apng;
 #[cfg(unix)]
 pub(super) use video::abandon;
@@ -57,6 +59,24 @@ pub(super) enum FilmFormat {
     Raw,
     /// Encoded by ffmpeg, without alpha.
     Video(Container),
+}
+
+/// The file name of a picture or a film; its ending says the format.
+pub(super) fn film_path(path: OsString) -> std::result::Result<PathBuf, String> {
+    let is_film = FilmFormat::from_path(Path::new(&path)).is_some();
+    match is_film {
+        true => Ok(path.into()),
+        false => values::picture_path(path)
+            .map_err(|error| format!("{error}, a film's in .apng, {}", ENDINGS)),
+    }
+}
+
+/// The parser of the file name of a picture or a film, or of a folder.
+pub(super) fn pictures_file() -> impl TypedValueParser<Value = PathBuf> {
+    OsStringValueParser::new().try_map(|path| match values::is_folder(Path::new(&path)) {
+        true => Ok(path.into()),
+        false => film_path(path),
+    })
 }
 
 impl FilmFormat {

@@ -6,14 +6,13 @@ mod linked;
 mod reach;
 mod visible;
 
+use rara::scene::Bounds;
 use rara::{Camera, Scene};
 
-use super::camera::{NamedView, Views};
 use super::failure::Failure;
 use super::lens::Lens;
 use super::output;
-use super::path::Orbit;
-use super::views::Framing;
+use super::views::{Framing, NamedView, Orbit, Views};
 pub(super) use visible::Visible;
 
 /// The cameras, once the scene is known.
@@ -24,6 +23,21 @@ pub(super) fn views(views: Views, scene: &Scene<'_>) -> Result<Vec<NamedView>, F
             framed.note().into_iter().for_each(output::say_afterwards);
             views_of(framed, &Visible::from_scene(scene))
         }
+    }
+}
+
+/// The camera of a command that measures; one that frames the scene holds the box around it.
+pub(super) fn boxed_views(views: Views, scene: &Scene<'_>) -> Result<Vec<NamedView>, Failure> {
+    match views {
+        Views::Framed(framed) => {
+            framed.note.iter().cloned().for_each(output::say_afterwards);
+            Ok(vec![NamedView {
+                number: 0,
+                name: "framing".into(),
+                camera: framed.boxed(&Bounds::of(scene))?,
+            }])
+        }
+        other => self::views(other, scene),
     }
 }
 

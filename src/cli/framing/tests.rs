@@ -5,7 +5,6 @@ use rara::scene::{self, Kind};
 use rara::{Camera, Gaussians, Layer, LayerState, Placement, Plane, Projection, Scene};
 
 use super::super::lens::{Depths, Lens};
-use super::super::path::Orbit;
 use super::super::views::Framing;
 use super::*;
 
@@ -318,4 +317,38 @@ fn sections_hold_all_that_is_visible_at_one_scale() {
         }
         assert!(scales.iter().all(|scale| *scale == scales[0]), "{scales:?}");
     }
+}
+
+/// Figures of commands that measure rest on the camera that holds the box.
+#[test]
+fn commands_that_measure_keep_the_box_s_camera() {
+    let made = rara::scene::generate(rara::scene::Kind::General, 300, 1);
+    let bounds = Bounds::of(&made);
+    let plain = Framing {
+        up: UP,
+        lens: Lens::Perspective(50.0),
+        size: (64, 48),
+        depths: Depths::default(),
+        eye: None,
+        target: None,
+        note: None,
+    };
+    let camera = |framed: &Framing| {
+        let views = boxed_views(Views::Framed(framed.clone()), &(&made).into());
+        views.expect("a view").remove(0).camera
+    };
+    let boxed = Camera::frame(&bounds, UP, 50.0, (64, 48)).expect("a view");
+    assert_eq!(camera(&plain), boxed);
+    let aside = DVec3::new(1.0, 2.0, 3.0);
+    let moved = camera(&Framing {
+        target: Some(bounds.centre() + aside),
+        ..plain.clone()
+    });
+    assert!((moved.eye - boxed.eye).distance(aside) < 1e-12);
+    let from = camera(&Framing {
+        eye: Some(aside),
+        ..plain
+    });
+    let facing = Camera::look_at(aside, bounds.centre(), UP, 50.0, (64, 48));
+    assert_eq!(from, facing.expect("a view"));
 }

@@ -7,10 +7,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-pub(super) use orbit::Orbit;
-
-use super::camera::{CameraArgs, NamedView, Views};
+use super::camera::CameraArgs;
 use super::failure::Failure;
+use super::views::{NamedView, Orbit, Views};
 use spline::Spline;
 
 /// Where the camera moves.

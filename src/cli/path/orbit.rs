@@ -5,15 +5,7 @@ use std::f64::consts::TAU;
 use glam::{DMat3, DVec3};
 use rara::Camera;
 
-use super::super::camera::NamedView;
-
-/// So many pictures on the way round.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(in super::super) struct Orbit {
-    /// Turns; the camera goes to its right, and where they are below zero to its left.
-    pub(in super::super) turns: f64,
-    pub(in super::super) frames: u32,
-}
+use super::super::views::{NamedView, Orbit};
 
 impl Orbit {
     /// The camera on its way round a point, about an axis in this direction.

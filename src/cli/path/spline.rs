@@ -9,7 +9,7 @@ use std::ops::{Add, Mul};
 use glam::{DMat3, DQuat, DVec3, DVec4};
 use rara::Camera;
 
-use super::super::camera::NamedView;
+use super::super::views::NamedView;
 
 /// Steps between two cameras in which the way is measured.
 const STEPS: usize = 64;

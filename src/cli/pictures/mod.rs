@@ -160,7 +160,7 @@ impl PictureArgs {
             return Ok(OutputTarget::Nowhere);
         };
         let is_folder = values::is_folder(output);
-        match values::film_path(output.into()) {
+        match film::film_path(output.into()) {
             Ok(file) if !is_folder => {
                 let kind = self.film.kind(Some(output))?;
                 return Ok(match kind {

@@ -52,7 +52,8 @@ pub(super) fn planes(camera: &Camera) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::camera::{CameraArgs, Views};
+    use crate::camera::CameraArgs;
+    use crate::views::Views;
     use clap::{Args as _, FromArgMatches as _};
     use glam::DVec3;
 

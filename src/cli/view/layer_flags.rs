@@ -101,7 +101,7 @@ pub(super) fn note(layers: &[NamedLayer], section: &[Expression]) -> Option<Stri
 
 #[cfg(test)]
 mod tests {
-    use crate::scenes::LoadedLayer;
+    use crate::scene_layers::LoadedLayer;
     use crate::view::action::{Edit, GripAction, Which};
     use crate::view::cut::ClipEditor;
     use crate::view::layers::Clips;

@@ -9,7 +9,7 @@ use super::layer_flags;
 use super::shots::quoted;
 use crate::failure::Failure;
 use crate::scene_file::LayerClip;
-use crate::scenes::{ListedState, LoadedLayer};
+use crate::scene_layers::{ListedState, LoadedLayer};
 use rara::clip::Expression;
 
 /// The frame's clip and the layers.

@@ -14,14 +14,16 @@ use super::layers::Clips;
 use super::scenery::Scenery;
 use super::text::ProgressBar;
 use super::{Begin, name};
-use crate::camera::{FOV_Y, Views};
+use crate::camera::FOV_Y;
 use crate::failure::Failure;
 use crate::framing::Visible;
 use crate::lens::{Depths, Lens};
 use crate::output::counted;
 use crate::reading::{Reading, Watch};
-use crate::scenes::{self, SceneLayers};
+use crate::scene_layers::SceneLayers;
+use crate::scenes;
 use crate::views::Framing;
+use crate::views::Views;
 use crate::{training, values};
 
 /// A scene that has been read, and how it is looked at.

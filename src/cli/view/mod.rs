@@ -37,13 +37,14 @@ use self::input::KEYS;
 use self::loading::LoadedWindow;
 use self::scenery::Manner;
 use self::shots::Shots;
-use super::camera::{CameraArgs, Views};
+use super::camera::CameraArgs;
 use super::clip::Regions;
 use super::failure::Failure;
 use super::frame::FrameArgs;
 use super::framing::Visible;
 use super::scenes::SceneArgs;
 use super::section::{SectionArgs, Sections};
+use super::views::Views;
 use super::{output, values};
 
 /// Look at a scene in a window, and drag clip shapes through it

@@ -83,14 +83,12 @@ pub unsafe extern "C" fn rara_gaussians_from_arrays(
     arrays: *const RaraGaussianArrays,
     gaussians: *mut *mut RaraGaussians,
 ) -> RaraResult {
-    guard(|| {
-        create(gaussians, "gaussians", || {
-            let arrays = read(arrays, NOTHING, "arrays")?;
-            let gaussians = Gaussians::new(arrays.copied()?).map_err(|error| {
-                Error::Invalid(format!("arrays->{error}")) // which begins with the array's name
-            })?;
-            Ok(gaussians.into())
-        })
+    create(gaussians, "gaussians", || {
+        let arrays = read(arrays, NOTHING, "arrays")?;
+        let gaussians = Gaussians::new(arrays.copied()?).map_err(|error| {
+            Error::Invalid(format!("arrays->{error}")) // which begins with the array's name
+        })?;
+        Ok(gaussians.into())
     })
 }
 

@@ -102,30 +102,28 @@ pub unsafe extern "C" fn rara_gaussians_bake(
     counts: *mut RaraBakeCounts,
     counts_size: usize,
 ) -> RaraResult {
-    guard(|| {
-        create(baked, "baked", || {
-            let gaussians = alive(gaussians, "gaussians")?;
-            let clip = alive(clip, "clip")?;
-            let default = BakeSettings::default();
-            let settings = match settings.is_null() {
-                true => default,
-                false => {
-                    let given = read(settings, default.into(), "settings")?;
-                    default
-                        .mode(mode(given.mode)?)
-                        .sigma(given.sigma)
-                        .children(given.children)
-                        .leave(given.leave)
-                }
-            };
-            let made = bake(&gaussians.gaussians, &clip.0, &settings)?;
-            if !counts.is_null() {
-                write(counts, counts_size, &made.counts.into(), "counts")?;
+    create(baked, "baked", || {
+        let gaussians = alive(gaussians, "gaussians")?;
+        let clip = alive(clip, "clip")?;
+        let default = BakeSettings::default();
+        let settings = match settings.is_null() {
+            true => default,
+            false => {
+                let given = read(settings, default.into(), "settings")?;
+                default
+                    .mode(mode(given.mode)?)
+                    .sigma(given.sigma)
+                    .children(given.children)
+                    .leave(given.leave)
             }
-            Ok(RaraGaussians {
-                properties: gaussians.properties_of(&made.sources),
-                ..made.gaussians.into()
-            })
+        };
+        let made = bake(&gaussians.gaussians, &clip.0, &settings)?;
+        if !counts.is_null() {
+            write(counts, counts_size, &made.counts.into(), "counts")?;
+        }
+        Ok(RaraGaussians {
+            properties: gaussians.properties_of(&made.sources),
+            ..made.gaussians.into()
         })
     })
 }

@@ -43,27 +43,25 @@ pub unsafe extern "C" fn rara_clip_of_planes(
     op: RaraClipOp,
     clip: *mut *mut RaraClip,
 ) -> RaraResult {
-    guard(|| {
-        create(clip, "clip", || {
-            if count > Clip::MAX_SURFACES {
-                return invalid(format!(
-                    "count is {count}, and a clip has at most {} planes",
-                    Clip::MAX_SURFACES
-                ));
-            }
-            let plane = |(index, plane): (usize, &RaraPlane)| {
-                let made = Plane::new(DVec3::from(plane.normal), plane.offset);
-                made.map_err(|error| Error::Invalid(format!("planes[{index}]: {error}")))
-            };
-            let planes = list(planes, count, "planes")?.iter().enumerate();
-            let planes: Vec<_> = planes.map(plane).collect::<Result<_>>()?;
-            let op = match op {
-                RARA_CLIP_OP_AND => ClipOp::And,
-                RARA_CLIP_OP_OR => ClipOp::Or,
-                other => return invalid(format!("op {other} is no RaraClipOp")),
-            };
-            Ok(RaraClip(Clip::of(planes, op)))
-        })
+    create(clip, "clip", || {
+        if count > Clip::MAX_SURFACES {
+            return invalid(format!(
+                "count is {count}, and a clip has at most {} planes",
+                Clip::MAX_SURFACES
+            ));
+        }
+        let plane = |(index, plane): (usize, &RaraPlane)| {
+            let made = Plane::new(DVec3::from(plane.normal), plane.offset);
+            made.map_err(|error| Error::Invalid(format!("planes[{index}]: {error}")))
+        };
+        let planes = list(planes, count, "planes")?.iter().enumerate();
+        let planes: Vec<_> = planes.map(plane).collect::<Result<_>>()?;
+        let op = match op {
+            RARA_CLIP_OP_AND => ClipOp::And,
+            RARA_CLIP_OP_OR => ClipOp::Or,
+            other => return invalid(format!("op {other} is no RaraClipOp")),
+        };
+        Ok(RaraClip(Clip::of(planes, op)))
     })
 }
 
@@ -75,11 +73,9 @@ pub unsafe extern "C" fn rara_clip_parse(
     expression: *const c_char,
     clip: *mut *mut RaraClip,
 ) -> RaraResult {
-    guard(|| {
-        create(clip, "clip", || {
-            let expression: Expression = text(expression, "expression")?.parse()?;
-            Ok(RaraClip(expression.clip()))
-        })
+    create(clip, "clip", || {
+        let expression: Expression = text(expression, "expression")?.parse()?;
+        Ok(RaraClip(expression.clip()))
     })
 }
 
@@ -93,12 +89,10 @@ pub unsafe extern "C" fn rara_clip_from_json(
     name: *const c_char,
     clip: *mut *mut RaraClip,
 ) -> RaraResult {
-    guard(|| {
-        create(clip, "clip", || {
-            let path = Path::new("json");
-            let clips = clips_from_json(list(json, size, "json")?, path)?;
-            named(&clips, name, path)
-        })
+    create(clip, "clip", || {
+        let path = Path::new("json");
+        let clips = clips_from_json(list(json, size, "json")?, path)?;
+        named(&clips, name, path)
     })
 }
 
@@ -109,11 +103,9 @@ pub unsafe extern "C" fn rara_clip_load(
     name: *const c_char,
     clip: *mut *mut RaraClip,
 ) -> RaraResult {
-    guard(|| {
-        create(clip, "clip", || {
-            let path = text::path(path, "path")?;
-            named(&load_clips(&path)?, name, &path)
-        })
+    create(clip, "clip", || {
+        let path = text::path(path, "path")?;
+        named(&load_clips(&path)?, name, &path)
     })
 }
 

@@ -158,35 +158,33 @@ pub unsafe extern "C" fn rara_device_adopt(
     desc: *const RaraAdoptDesc,
     device: *mut *mut RaraDevice,
 ) -> RaraResult {
-    guard(|| {
-        create(device, "device", || {
-            let desc = read(desc, RaraAdoptDesc::new(), "desc")?;
-            let instance = load_instance(
-                desc.get_instance_proc_addr,
-                desc.instance,
-                desc.physical_device,
-            )?;
-            let device = load_device(&instance, &desc)?;
-            let queue = (desc.queue, desc.queue_family);
-            let version = desc.api_version;
-            let lender = Lender::new(desc.allocate, desc.free, desc.allocator_user)?;
-            let adopt = AdoptDesc::new(version, instance, desc.physical_device, device, queue)
-                .mesh_shader(desc.mesh_shader != 0)
-                .push_descriptor(desc.push_descriptor != 0)
-                .full_subgroups(desc.full_subgroups != 0)
-                .shape(shape(&desc)?)
-                .debug_utils(desc.debug_utils != 0)
-                .pipeline_cache(desc.pipeline_cache)
-                .memory(lender.map(|lender| Arc::new(lender) as _));
-            let release = Arc::new(Release {
-                release: desc.release,
-                user: desc.release_user,
-                armed: AtomicBool::new(false),
-            });
-            let device = Device::adopt(adopt.keep_alive(Some(release.clone())))?;
-            release.armed.store(true, Ordering::Relaxed);
-            Ok(RaraDevice(device))
-        })
+    create(device, "device", || {
+        let desc = read(desc, RaraAdoptDesc::new(), "desc")?;
+        let instance = load_instance(
+            desc.get_instance_proc_addr,
+            desc.instance,
+            desc.physical_device,
+        )?;
+        let device = load_device(&instance, &desc)?;
+        let queue = (desc.queue, desc.queue_family);
+        let version = desc.api_version;
+        let lender = Lender::new(desc.allocate, desc.free, desc.allocator_user)?;
+        let adopt = AdoptDesc::new(version, instance, desc.physical_device, device, queue)
+            .mesh_shader(desc.mesh_shader != 0)
+            .push_descriptor(desc.push_descriptor != 0)
+            .full_subgroups(desc.full_subgroups != 0)
+            .shape(shape(&desc)?)
+            .debug_utils(desc.debug_utils != 0)
+            .pipeline_cache(desc.pipeline_cache)
+            .memory(lender.map(|lender| Arc::new(lender) as _));
+        let release = Arc::new(Release {
+            release: desc.release,
+            user: desc.release_user,
+            armed: AtomicBool::new(false),
+        });
+        let device = Device::adopt(adopt.keep_alive(Some(release.clone())))?;
+        release.armed.store(true, Ordering::Relaxed);
+        Ok(RaraDevice(device))
     })
 }
 

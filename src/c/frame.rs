@@ -51,17 +51,15 @@ pub unsafe extern "C" fn rara_renderer_configure(
     settings: *const RaraSettings,
     frame: *mut *mut RaraFrame,
 ) -> RaraResult {
-    guard(|| {
-        create(frame, "frame", || {
-            let mut renderer = alone(renderer, "renderer")?;
-            let scene = alive(scene, "scene")?;
-            let camera = camera::camera(camera)?;
-            let clip = clip::clip(clip, "clip")?.unwrap_or_default();
-            let settings = settings::settings(settings)?;
-            let renderer = &mut renderer.0;
-            let frame = renderer.configure(&scene.buffers, &camera, &clip, &settings)?;
-            Ok(RaraFrame(FrameState::Configured(frame)))
-        })
+    create(frame, "frame", || {
+        let mut renderer = alone(renderer, "renderer")?;
+        let scene = alive(scene, "scene")?;
+        let camera = camera::camera(camera)?;
+        let clip = clip::clip(clip, "clip")?.unwrap_or_default();
+        let settings = settings::settings(settings)?;
+        let renderer = &mut renderer.0;
+        let frame = renderer.configure(&scene.buffers, &camera, &clip, &settings)?;
+        Ok(RaraFrame(FrameState::Configured(frame)))
     })
 }
 

@@ -31,16 +31,18 @@ fn handles() -> MutexGuard<'static, Handles> {
     HANDLES.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Makes a handle: `*out` is null if `make` fails.
+/// Runs the body of a function that makes a handle: `*out` is null if `make` fails.
 pub(crate) unsafe fn create<T: Send + Sync + 'static>(
     out: *mut *mut T,
     name: &str,
     make: impl FnOnce() -> Result<T>,
-) -> Result<()> {
-    let out = exclusive(out, name)?;
-    *out = std::ptr::null_mut();
-    *out = add(make()?)?;
-    Ok(())
+) -> RaraResult {
+    guard(|| {
+        let out = exclusive(out, name)?;
+        *out = std::ptr::null_mut();
+        *out = add(make()?)?;
+        Ok(())
+    })
 }
 
 /// Gives an object a handle.

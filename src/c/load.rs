@@ -6,7 +6,7 @@ use std::io::Cursor;
 use rara::Result;
 use rara::scene::{Loaded, Predicate, Property, load_from_with, load_with};
 
-use crate::boundary::{RaraResult, guard, list};
+use crate::boundary::{RaraResult, list};
 use crate::gaussians::RaraGaussians;
 use crate::handles::create;
 use crate::selection::parse;
@@ -26,12 +26,10 @@ pub unsafe extern "C" fn rara_gaussians_load(
     predicate_count: usize,
     gaussians: *mut *mut RaraGaussians,
 ) -> RaraResult {
-    guard(|| {
-        create(gaussians, "gaussians", || {
-            let path = text::path(path, "path")?;
-            let predicates = parsed(predicates, predicate_count)?;
-            load_with(&path, &compared(&predicates), &mut |_, _| ()).map(made)
-        })
+    create(gaussians, "gaussians", || {
+        let path = text::path(path, "path")?;
+        let predicates = parsed(predicates, predicate_count)?;
+        load_with(&path, &compared(&predicates), &mut |_, _| ()).map(made)
     })
 }
 
@@ -46,13 +44,11 @@ pub unsafe extern "C" fn rara_gaussians_load_from(
     predicate_count: usize,
     gaussians: *mut *mut RaraGaussians,
 ) -> RaraResult {
-    guard(|| {
-        create(gaussians, "gaussians", || {
-            let name = text::path(name, "name")?;
-            let source = Cursor::new(list(data, size, "data")?);
-            let predicates = parsed(predicates, predicate_count)?;
-            load_from_with(source, &name, &compared(&predicates), &mut |_, _| ()).map(made)
-        })
+    create(gaussians, "gaussians", || {
+        let name = text::path(name, "name")?;
+        let source = Cursor::new(list(data, size, "data")?);
+        let predicates = parsed(predicates, predicate_count)?;
+        load_from_with(source, &name, &compared(&predicates), &mut |_, _| ()).map(made)
     })
 }
 

@@ -47,11 +47,9 @@ pub unsafe extern "C" fn rara_picker_create(
     in_flight: u32,
     picker: *mut *mut RaraPicker,
 ) -> RaraResult {
-    guard(|| {
-        create(picker, "picker", || {
-            let renderer = alive(renderer, "renderer")?;
-            Ok(RaraPicker(Picker::new(&renderer.0, in_flight)?))
-        })
+    create(picker, "picker", || {
+        let renderer = alive(renderer, "renderer")?;
+        Ok(RaraPicker(Picker::new(&renderer.0, in_flight)?))
     })
 }
 

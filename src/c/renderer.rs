@@ -46,11 +46,9 @@ pub unsafe extern "C" fn rara_renderer_create(
     desc: *const RaraRendererDesc,
     renderer: *mut *mut RaraRenderer,
 ) -> RaraResult {
-    guard(|| {
-        create(renderer, "renderer", || {
-            let device = alive(device, "device")?;
-            Renderer::new(&device.0, renderer_desc(desc)?).map(RaraRenderer)
-        })
+    create(renderer, "renderer", || {
+        let device = alive(device, "device")?;
+        Renderer::new(&device.0, renderer_desc(desc)?).map(RaraRenderer)
     })
 }
 
@@ -62,11 +60,9 @@ pub unsafe extern "C" fn rara_renderer_create_sharing(
     desc: *const RaraRendererDesc,
     renderer: *mut *mut RaraRenderer,
 ) -> RaraResult {
-    guard(|| {
-        create(renderer, "renderer", || {
-            let other = alive(other, "other")?;
-            other.0.sharing(renderer_desc(desc)?).map(RaraRenderer)
-        })
+    create(renderer, "renderer", || {
+        let other = alive(other, "other")?;
+        other.0.sharing(renderer_desc(desc)?).map(RaraRenderer)
     })
 }
 

@@ -62,16 +62,14 @@ pub unsafe extern "C" fn rara_gaussians_select(
     placement: *const RaraPlacement,
     taken: *mut *mut RaraGaussians,
 ) -> RaraResult {
-    guard(|| {
-        create(taken, "taken", || {
-            let mut gaussians = alone(gaussians, "gaussians")?;
-            let predicate = parse(text(predicate, "predicate")?, "predicate")?;
-            let placement = match placement.as_ref() {
-                Some(placement) => placement.placement()?,
-                None => Placement::IDENTITY,
-            };
-            gaussians.select(&predicate, &placement)
-        })
+    create(taken, "taken", || {
+        let mut gaussians = alone(gaussians, "gaussians")?;
+        let predicate = parse(text(predicate, "predicate")?, "predicate")?;
+        let placement = match placement.as_ref() {
+            Some(placement) => placement.placement()?,
+            None => Placement::IDENTITY,
+        };
+        gaussians.select(&predicate, &placement)
     })
 }
 

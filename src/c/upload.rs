@@ -25,15 +25,13 @@ pub unsafe extern "C" fn rara_scene_buffers_upload(
     sh_format: RaraShFormat,
     scene: *mut *mut RaraSceneBuffers,
 ) -> RaraResult {
-    guard(|| {
-        create(scene, "scene", || {
-            let device = alive(device, "device")?;
-            let layers = given(layers, layer_count)?;
-            let numbers = numbers_of(&layers);
-            let scene = of_layers(&layers, &numbers);
-            let format = scene::sh_format(sh_format)?;
-            SceneBuffers::upload(&device.0, scene, format).map(RaraSceneBuffers::new)
-        })
+    create(scene, "scene", || {
+        let device = alive(device, "device")?;
+        let layers = given(layers, layer_count)?;
+        let numbers = numbers_of(&layers);
+        let scene = of_layers(&layers, &numbers);
+        let format = scene::sh_format(sh_format)?;
+        SceneBuffers::upload(&device.0, scene, format).map(RaraSceneBuffers::new)
     })
 }
 
@@ -82,17 +80,14 @@ pub unsafe extern "C" fn rara_scene_buffers_upload_with(
     sh_format: RaraShFormat,
     scene: *mut *mut RaraSceneBuffers,
 ) -> RaraResult {
-    guard(|| {
-        create(scene, "scene", || {
-            let device = alive(device, "device")?;
-            let cmd = recording(cmd)?;
-            let staging = staging::staging(staging)?;
-            let layers = given(layers, layer_count)?;
-            let numbers = numbers_of(&layers);
-            let scene = of_layers(&layers, &numbers);
-            let format = scene::sh_format(sh_format)?;
-            SceneBuffers::upload_with(&device.0, cmd, staging, scene, format)
-                .map(RaraSceneBuffers::new)
-        })
+    create(scene, "scene", || {
+        let device = alive(device, "device")?;
+        let cmd = recording(cmd)?;
+        let staging = staging::staging(staging)?;
+        let layers = given(layers, layer_count)?;
+        let numbers = numbers_of(&layers);
+        let scene = of_layers(&layers, &numbers);
+        let format = scene::sh_format(sh_format)?;
+        SceneBuffers::upload_with(&device.0, cmd, staging, scene, format).map(RaraSceneBuffers::new)
     })
 }

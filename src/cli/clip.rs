@@ -195,7 +195,7 @@ pub(super) fn joined(all: &[Expression], op: ClipOp) -> Clip {
     }
 }
 
-/// In place of a clip's name: all clips of a file.
+/// The name that stands for all clips of a file.
 const ALL: &str = "*";
 
 /// True for several clips that have names, of which one is meant. The clips of single layers are none of these.

@@ -18,7 +18,7 @@ pub(super) struct FrameSummary {
 /// Times of a frame, milliseconds, as in [`FrameStats`].
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub(super) struct Times {
-    /// None where the device took no times.
+    /// The time on the device; none where it took no times.
     gpu_ms: Option<f64>,
     wall_ms: f64,
 }

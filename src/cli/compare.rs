@@ -52,7 +52,7 @@ pub(super) struct Measures {
     pub(super) max: f64,
     pub(super) l1: f64,
     pub(super) rmse: f64,
-    /// None where the pictures are equal.
+    /// The PSNR, decibels; none where the pictures are equal.
     pub(super) psnr: Option<f64>,
     pub(super) ssim: f64,
     pub(super) share_over_2: f64,

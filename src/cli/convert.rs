@@ -71,7 +71,7 @@ struct ConvertJson {
     faint: usize,
     lost: usize,
     written: usize,
-    /// Of what was written, how much has numbers at the ends of what the format holds in place of its own.
+    /// The number of Gaussians that were written with the least or greatest value of the format in place of their own.
     clamped: u64,
     sh_degree: u32,
     bytes: u64,

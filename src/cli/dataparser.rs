@@ -30,7 +30,7 @@ struct DataparserTransform {
     applied_scale: Option<f64>,
 }
 
-/// From the world of the cameras to that of the Gaussians: scale (axes p + shift).
+/// The way from the world of the cameras to that of the Gaussians: scale (axes p + shift).
 #[derive(Debug, Clone, Copy)]
 struct Move {
     axes: DMat3,

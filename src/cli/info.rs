@@ -47,7 +47,7 @@ struct Facts {
     /// Box without the stray centres, along which sections and sweeps count.
     robust_bounds: Extent,
     opacity: Spread,
-    /// Of each Gaussian's longest axis, world units.
+    /// The deviations along each Gaussian's longest axis, world units.
     scale: Spread,
     /// Longest to middle axis, so that flat Gaussians do not count as needles.
     elongation: Spread,

@@ -18,7 +18,7 @@ pub(super) struct SessionCache {
     last: Option<(ScenePlace, SceneLayers)>,
 }
 
-/// Where a scene is drawn.
+/// The scene and the device that a session is kept for.
 pub(super) struct ScenePlace {
     /// The flags of the scene and of its device.
     flags: String,
@@ -28,7 +28,7 @@ pub(super) struct ScenePlace {
 }
 
 impl SessionCache {
-    /// For several commands.
+    /// A cache that several commands share.
     pub(super) fn wanted() -> Self {
         Self {
             is_wanted: true,

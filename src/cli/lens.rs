@@ -15,7 +15,7 @@ pub(super) const UP: DVec3 = DVec3::NEG_Y;
 pub(super) enum Ortho {
     /// World units that it is high.
     Height(f64),
-    /// As many as hold the scene.
+    /// So high that it holds the scene.
     Fit,
 }
 

@@ -43,7 +43,7 @@ struct PredictedFrame {
     name: String,
     gaussians: usize,
     is_cut: bool,
-    /// In the order of `gpus`.
+    /// The passes on each GPU, in the order of `gpus`.
     predicted: [Vec<PassPrediction>; GPUS.len()],
 }
 

@@ -150,7 +150,7 @@ pub(super) fn answer(text: &str) -> Result<()> {
     bytes(format!("{}\n", text.trim_end()).as_bytes()).map(drop)
 }
 
-/// Held by each picture from before it gets its name until its line is printed.
+/// Each picture holds this from before it gets its name until its line is printed.
 static UNSETTLED: RwLock<()> = RwLock::new(());
 
 static IS_ENDING: AtomicBool = AtomicBool::new(false);

@@ -27,7 +27,7 @@ pub(super) struct PanoramaArgs {
     panorama: bool,
 }
 
-/// As wide as pictures can be.
+/// The greatest width of pictures.
 const MOST: u32 = Camera::MAX_SIZE;
 
 /// The size where no other is given.

@@ -91,7 +91,7 @@ pub(super) struct Render {
 }
 
 enum Pictures {
-    /// Of cameras, under one clip.
+    /// Pictures of cameras, under one clip.
     Views(Views, Regions),
     Sections(Sections),
 }

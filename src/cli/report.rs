@@ -17,11 +17,11 @@ use super::views::NamedView;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Answer {
-    /// As a table, for people.
+    /// A table for people.
     Table,
-    /// As one JSON document.
+    /// One JSON document.
     Document,
-    /// As a line of JSON for each picture, when it is done.
+    /// A line of JSON for each picture, when it is done.
     Lines,
 }
 
@@ -58,7 +58,7 @@ pub(super) struct FrameRecord {
     /// The number of its view or section.
     view: usize,
     name: String,
-    /// Where the picture is, if it was written.
+    /// The path of the picture, if it was written.
     file: Option<String>,
     /// The section's plane, or the one that moves: normal and offset.
     plane: Option<[f64; 4]>,

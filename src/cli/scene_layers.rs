@@ -16,7 +16,7 @@ pub(super) struct LoadedLayer {
     pub(super) format: Option<Format>,
     pub(super) state: LayerState,
     pub(super) clip: Option<LayerClip>,
-    /// Where it is a part of a file.
+    /// Its place in the files, where it is a part of one.
     pub(super) numbers: Option<select::Numbers>,
     /// What to say where it is antialiased because its training's settings say so, and its file says nothing.
     pub(super) trained: Option<String>,
@@ -137,7 +137,7 @@ impl SceneLayers {
         Ok(())
     }
 
-    /// Where the name ends in the text of a flag, `NAME=` and more; none in a text without the sign. A name may hold it too.
+    /// The end of the name in the text of a flag, `NAME=` and more; none in a text without the sign. A name may hold it too.
     pub(super) fn end_of_name(&self, text: &str) -> Option<usize> {
         let signs = || text.match_indices('=').map(|(at, _)| at);
         let of_a_layer = |at: &usize| self.layers.iter().any(|l| l.name == text[..*at]);

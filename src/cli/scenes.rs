@@ -81,7 +81,7 @@ impl SceneArgs {
         Ok(entries)
     }
 
-    /// Where the scenes are: what was typed, or the files that it names.
+    /// The places of the scenes: what was typed, or the files that it names.
     pub(super) fn places(&self) -> Vec<PathBuf> {
         let places = |typed: &PathBuf| {
             if typed.exists() && !scene_file::is_list(typed) {

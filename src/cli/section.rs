@@ -128,7 +128,7 @@ pub(super) struct Sections {
 
 #[derive(Debug)]
 enum SectionPlan {
-    /// Across an axis, at a share of the bounds along it.
+    /// A section across an axis, at a share of the bounds along it.
     Across(Axis, f64),
     /// A plane by its name.
     Plane(String, Plane),

@@ -127,7 +127,7 @@ pub(super) type Numbers = (u32, Vec<u32>);
 
 /// What has become of a layer's Gaussians.
 pub(super) struct LayerRemains {
-    /// Of the layer before: where it is a part of a file, its place in the files, and how many Gaussians it had.
+    /// The place of the layer in the files, where it was a part of one, and how many Gaussians it had.
     pub(super) numbers: Option<Numbers>,
     pub(super) count: usize,
     pub(super) gaussians: Gaussians,

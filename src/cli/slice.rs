@@ -78,7 +78,7 @@ pub(super) struct Slicer<'a> {
     args: &'a SliceArgs,
     scene: Scene<'a>,
     device: HeadlessDesc,
-    /// Opened for the first cue.
+    /// A session that is opened for the first cue.
     session: Option<Session>,
 }
 

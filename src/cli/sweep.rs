@@ -228,7 +228,7 @@ impl Sweep {
 enum SweepTarget {
     /// A plane of this unit normal, across the scene.
     Plane(DVec3),
-    /// From the first region to the other.
+    /// A region that moves from the first to the other.
     Region(Expression, Expression),
 }
 

@@ -189,7 +189,7 @@ pub(super) fn is_folder(path: &Path) -> bool {
     name.last().is_some_and(is_separator) || (path != Path::new(STANDARD) && path.is_dir())
 }
 
-/// In place of a file: standard input and standard output.
+/// The name of standard input and standard output in place of a file.
 pub(super) const STANDARD: &str = "-";
 
 pub(super) fn picture_file() -> impl TypedValueParser<Value = PathBuf> {

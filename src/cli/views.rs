@@ -181,7 +181,7 @@ pub(super) fn picked(
     })
 }
 
-/// Where the view with the number or name `wanted` is.
+/// The index of the view with the number or name `wanted`.
 fn found(views: &[NamedView], wanted: &str) -> Option<usize> {
     let stem = |name: &str| Path::new(name).file_stem().map(|s| s.to_owned());
     let by_number = wanted.parse::<usize>().ok().filter(|n| *n < views.len());

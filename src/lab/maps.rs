@@ -31,7 +31,7 @@ pub fn scale(width: u32, height: u32) -> Picture {
     picture
 }
 
-/// Where a difference lies on the scale, 0 to 1.
+/// The place of a difference on the scale, 0 to 1.
 pub fn place(difference: f64) -> f64 {
     ((difference / LEAST).ln() / (MOST / LEAST).ln()).clamp(0.0, 1.0)
 }

@@ -137,7 +137,7 @@ impl Batch {
         refuse(&missing)
     }
 
-    /// Where it is noted what is done.
+    /// The folder in which it is noted what is done.
     fn folder(&self) -> Result<PathBuf, Failure> {
         match (&self.state, self.files.iter().find(|file| *file != Path::new("-"))) {
             (Some(folder), _) => Ok(folder.clone()),
@@ -356,7 +356,7 @@ fn missing<'a>(planned: &'a [JobPlan], share: &[(usize, usize)], state: &State) 
 
 /// Fails where something is missing.
 fn refuse(missing: &[&str]) -> Result<(), Failure> {
-    /// As many names as fit on a line.
+    /// The number of names that fit on a line.
     const NAMED: usize = 5;
     if missing.is_empty() {
         return Ok(());
@@ -431,7 +431,7 @@ struct Run<'a> {
 struct Pace {
     bar: ProgressLine,
     begin: Instant,
-    /// When the last picture was done.
+    /// The time at which the last picture was done.
     last: Instant,
     /// Work that is done, and all of it.
     done: f64,

@@ -19,7 +19,7 @@ const SCHEDULERS: [[&str; 4]; 2] = [
     ],
 ];
 
-/// Those that set an index and not how many there are, and the first index.
+/// The variables that set an index and not how many there are, and the first index.
 const INDICES: [(&str, u32); 3] = [
     ("JOB_COMPLETION_INDEX", 0), // Kubernetes
     ("PBS_ARRAY_INDEX", 1),

@@ -28,9 +28,9 @@ pub(super) struct StateRecord {
     pub(super) version: String,
     pub(super) driver: String,
     pub(super) worker: String,
-    /// When it was done, seconds since 1970.
+    /// The time at which it was done, seconds since 1970.
     pub(super) at: f64,
-    /// Between the picture before and this one.
+    /// The time between the picture before and this one.
     pub(super) seconds: f64,
     /// What shares are balanced by.
     pub(super) work: f64,

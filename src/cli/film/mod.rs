@@ -185,7 +185,7 @@ impl Film {
     }
 }
 
-/// Where a film's bytes go.
+/// The file or the stream that a film's bytes go to.
 #[derive(Debug)]
 pub(super) enum FilmTarget {
     Stdout,

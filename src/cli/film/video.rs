@@ -61,7 +61,7 @@ pub(in super::super) fn abandon() {
     std::mem::forget(encoder); // who waits for it, waits for the end
 }
 
-/// Where ffmpeg is; fails where it is not.
+/// Finds ffmpeg, or fails.
 pub(super) fn encoder(file: &Path) -> Result<PathBuf> {
     let name = format!("ffmpeg{}", std::env::consts::EXE_SUFFIX);
     let folders = std::env::var_os("PATH").unwrap_or_default();
@@ -76,7 +76,7 @@ pub(super) fn encoder(file: &Path) -> Result<PathBuf> {
 }
 
 pub(in super::super) struct Video {
-    /// None when it has got everything.
+    /// The pipe to ffmpeg; none when it has got everything.
     pictures: Option<ChildStdin>,
     /// What it complains of.
     complaint: Option<JoinHandle<String>>,

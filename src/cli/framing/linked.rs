@@ -33,7 +33,7 @@ pub(super) struct WeightedPoint {
     pub(super) size: f64,
 }
 
-/// Those that are framed. A `generous` choice takes ten times as little for worth showing.
+/// The Gaussians that are framed. A `generous` choice takes ten times as little for worth showing.
 pub(super) fn framed(all: &[WeightedPoint], generous: bool) -> Vec<Reach> {
     let Some(cell) = cell(all) else {
         return all.iter().map(|one| one.reach).collect();

@@ -170,7 +170,7 @@ impl Visible {
         self.middle + rotation.transpose() * off.with_z(0.0)
     }
 
-    /// Where an orthographic eye stands whose picture has this point in its middle: before all of it.
+    /// The place of an orthographic eye whose picture has this point in its middle: before all of it.
     pub(super) fn before(&self, rotation: DMat3, point: DVec3) -> DVec3 {
         let forward = rotation.row(2);
         let away = 2.0 * self.radius + NEAREST;

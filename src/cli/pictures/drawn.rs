@@ -12,9 +12,9 @@ pub(in super::super) struct RenderedPicture {
     pub(in super::super) frame: FrameRecord,
     /// The frames that it is made of, if they are several.
     pub(in super::super) faces: Vec<FrameRecord>,
-    /// None where it goes nowhere.
+    /// The pixels; none where they go nowhere.
     pub(in super::super) picture: Option<Pixels>,
-    /// Beside its colours.
+    /// The channels beside its colours.
     pub(in super::super) channels: Vec<Channel>,
 }
 

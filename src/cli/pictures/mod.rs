@@ -68,7 +68,7 @@ pub(super) fn needs_floats(output: Option<&Path>, what: &str) -> Result<(), Fail
     }
 }
 
-/// Where pictures go, checked before any work is done.
+/// The place that pictures go to, checked before any work is done.
 pub(super) struct Destination<'a> {
     args: &'a PictureArgs,
     place: OutputTarget,
@@ -101,7 +101,7 @@ enum OutputTarget {
 
 /// A picture that is to be drawn, and its file.
 pub(super) struct PictureJob<T> {
-    /// In the whole run.
+    /// The number of the picture in the whole run.
     number: usize,
     pub(super) what: T,
     pub(super) file: Option<PathBuf>,
@@ -133,7 +133,7 @@ impl PictureArgs {
         }
     }
 
-    /// Where pictures of these numbers go. `several` is what makes more than one of them, if anything does.
+    /// The place that pictures of these numbers go to. `several` is what makes more than one of them, if anything does.
     pub(super) fn destination<'a>(
         &'a self,
         output: Option<&Path>,

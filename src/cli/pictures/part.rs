@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(in super::super) struct RunShare {
-    /// From 1.
+    /// The number of the part, from 1.
     number: u32,
     of: u32,
 }
@@ -26,7 +26,7 @@ impl FromStr for RunShare {
 }
 
 impl RunShare {
-    /// Those of all that are in this part. Parts follow each other, and differ by one at most.
+    /// The ones of `all` that are in this part. Parts follow each other, and differ by one at most.
     pub(super) fn take_from<T>(self, mut all: Vec<T>) -> Vec<T> {
         let count = all.len() as u128;
         // At most as large as the count.

@@ -33,7 +33,7 @@ struct Writer<'a, T> {
     planned: &'a [PictureJob<T>],
     film: Option<Mutex<Film>>,
     outcome: Mutex<Outcome>,
-    /// Told of each change of the outcome.
+    /// It is notified of each change of the outcome.
     changed: Condvar,
 }
 

@@ -59,9 +59,9 @@ pub(super) enum Action {
 
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Which {
-    /// By its number from 1, as keys have it.
+    /// The number of the layer from 1, as keys have it.
     Number(usize),
-    /// By what a script says: a layer's name or, where none has it, a number from 1.
+    /// The text of a script: a layer's name or, where none has it, a number from 1.
     Typed(String),
 }
 

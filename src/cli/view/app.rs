@@ -57,7 +57,7 @@ struct App {
     opens_after: Option<u32>,
     /// True once a step of the script has failed.
     has_failed: bool,
-    /// When held keys last moved the view.
+    /// The time at which held keys last moved the view.
     moved_at: Option<Instant>,
     failure: Option<Failure>,
 }

@@ -11,7 +11,7 @@ use crate::clip::joined;
 #[derive(Debug, Clone)]
 pub(super) struct ClipEditor {
     pub(super) on: bool,
-    /// At least one; shapes come before larger expressions, as flags are read.
+    /// One expression at least; shapes come before larger expressions, as flags are read.
     expressions: Vec<Expression>,
     op: ClipOp,
     /// How many of the expressions, from the first, are a section's. They cut layers that have clips of their own as well.

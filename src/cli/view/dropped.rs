@@ -15,7 +15,7 @@ pub(super) enum DroppedFile {
     /// A scene, which is yet to be read.
     Scene,
     Clip(Vec<NamedClip>),
-    /// At least one.
+    /// One camera at least.
     Cameras(Vec<Camera>),
 }
 

@@ -16,7 +16,7 @@ use rara::clip::Expression;
 #[derive(Debug, Clone)]
 pub(super) struct Clips {
     pub(super) frame: ClipEditor,
-    /// By name: layers of one name that begin alike go together, as flags name them.
+    /// The layers by name: those of one name that begin alike go together, as flags name them.
     layers: Vec<NamedLayer>,
     /// The number of the layer whose own clip is edited; `None` for the frame's.
     edited: Option<usize>,

@@ -24,7 +24,7 @@ pub(super) fn lines(shape: &Shape) -> Vec<String> {
     lines
 }
 
-/// Where a plane stands along its normal, world units.
+/// The place of a plane along its normal, world units.
 pub(super) fn stands_at(plane: &Plane) -> f64 {
     0.0 - plane.offset() // -0 is 0
 }

@@ -26,7 +26,7 @@ pub(super) struct Overlay {
     keys: bool,
     numbers: bool,
     hint: bool,
-    /// Until when it is shown, once there is a scene.
+    /// The time until which the hint is shown, once there is a scene.
     hint_until: Option<Instant>,
     /// What has failed or was done, until when it is shown, and whether it has failed.
     message: Option<(String, Instant, bool)>,
@@ -49,7 +49,7 @@ pub(super) struct Content {
 
 /// What the overlay says of the picture.
 pub(super) struct OverlayScene<'a> {
-    /// None without a scene.
+    /// The clips; none without a scene.
     pub(super) clips: Option<&'a Clips>,
     pub(super) mode: Mode,
     pub(super) stats: Option<&'a FrameStats>,
@@ -61,7 +61,7 @@ pub(super) struct OverlayScene<'a> {
 }
 
 impl Overlay {
-    /// With numbers, a hint and what was done, or with nothing until a key asks for it.
+    /// An overlay with numbers, a hint and what was done, or with nothing until a key asks for it.
     pub(super) fn new(text: bool) -> Self {
         Self {
             talks: text,
@@ -110,7 +110,7 @@ impl Overlay {
         }
     }
 
-    /// When something of it goes away.
+    /// The time at which something of it goes away.
     pub(super) fn until(&self) -> Option<Instant> {
         let message = self.message.as_ref().map(|(_, until, _)| *until);
         [self.hint_until, message].into_iter().flatten().min()

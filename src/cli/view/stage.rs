@@ -66,7 +66,7 @@ pub(super) struct Viewer {
     pub(super) dirty: bool,
     /// True when the last frame's numbers are not known yet.
     pub(super) unsettled: bool,
-    /// When the last frame was shown, if the next one follows at once.
+    /// The time at which the last frame was shown, if the next one follows at once.
     pub(super) shown_at: Option<Instant>,
     pub(super) intervals: Vec<Duration>,
     pub(super) titled_at: Option<Instant>,

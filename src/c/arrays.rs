@@ -130,7 +130,7 @@ struct Array<'a> {
     /// Bytes, 0 where there are no gaps.
     stride: usize,
     count: usize,
-    /// Of one element, in messages.
+    /// The name of one element in messages.
     name: &'a str,
 }
 

@@ -52,9 +52,9 @@ pub struct RaraBakeCounts {
     pub cutoff: u64,
     /// Gaussians that lie outside; they are dropped.
     pub invisible: u64,
-    /// Of those that are cut: kept as they are, since the cut passes far enough outside (RaraBakeSettings::leave).
+    /// Gaussians that are cut and kept as they are, since the cut passes far enough outside (RaraBakeSettings::leave).
     pub left: u64,
-    /// Of those that are cut: dropped, since nothing is left that could be seen.
+    /// Gaussians that are cut and dropped, since nothing is left that could be seen.
     pub faint: u64,
     /// Gaussians that stand for cut ones.
     pub children: u64,

@@ -10,7 +10,7 @@ use crate::handles::alive;
 
 /// How a camera sees.
 pub type RaraProjection = u32;
-/// In perspective.
+/// The camera is in perspective.
 pub const RARA_PROJECTION_PERSPECTIVE: RaraProjection = 0;
 /// Lines of sight run along the view axis.
 pub const RARA_PROJECTION_ORTHOGRAPHIC: RaraProjection = 1;

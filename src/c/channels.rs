@@ -41,13 +41,13 @@ const ALL: [(RaraAovs, Aov, usize); 5] = [
 pub struct RaraChannels {
     /// Set by rara_channels_default.
     pub struct_size: usize,
-    /// Which quantities: one bit or more.
+    /// The quantities: one bit or more.
     pub aovs: RaraAovs,
     /// The camera's picture width, pixels.
     pub width: u32,
     /// The camera's picture height, pixels.
     pub height: u32,
-    /// Where the numbers go: one channel after the other, in the order of the bits, and each row by row from the top left.
+    /// The place of the numbers: one channel after the other, in the order of the bits, and each row by row from the top left.
     pub values: *mut f32,
     /// How many numbers there is room for, which is how many there are: width times height for each channel, of which
     /// RARA_AOV_NORMAL has three and the others one. Set by rara_channels_default.

@@ -15,7 +15,7 @@ pub struct RaraGaussians {
     pub(crate) report: LoadReport,
     /// Numbers that each of them has beside what it is drawn with, for selections.
     pub(crate) properties: Vec<Property>,
-    /// Where selections have divided a set, which part of it they are.
+    /// The part of a set that they are, where selections have divided it.
     pub(crate) part: Option<SetPart>,
 }
 

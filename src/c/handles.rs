@@ -19,7 +19,7 @@ type Object = Arc<dyn Any + Send + Sync>;
 struct Handles {
     /// The number that was given out last.
     last: usize,
-    /// By their numbers, with their kind; `None` while a thread has the object to itself.
+    /// The objects by their numbers, with their kind; `None` while a thread has the object to itself.
     objects: HashMap<usize, (TypeId, Option<Object>)>,
 }
 

@@ -43,7 +43,7 @@ pub struct RaraMemory {
     pub struct_size: usize,
     /// The memory, allocated with VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT.
     pub memory: vk::DeviceMemory,
-    /// Where the part begins in it, bytes.
+    /// The offset of the part in it, bytes.
     pub offset: u64,
     /// The part as the processor sees it; null for RARA_MEMORY_USE_DEVICE.
     pub mapped: *mut c_void,

@@ -4,7 +4,7 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
-/// Of Gaussians that are a part of a set: which set it is, and their numbers in it, which ascend.
+/// A part of a set of Gaussians: which set it is, and their numbers in it, which ascend.
 #[derive(Clone)]
 pub(crate) struct SetPart {
     /// How many Gaussians the whole set has. Parts of one set share it, and thereby are known.

@@ -9,10 +9,10 @@ use crate::depth::{self, RaraDepthDesc};
 
 /// How shaders reach buffers.
 pub type RaraBindings = u32;
-/// By address, which is fast. The default.
+/// Buffers are read by address, which is fast. The default.
 pub const RARA_BINDINGS_ADDRESS: RaraBindings = 0;
-/// Bound, so that the validation layer can watch them. Needs VK_KHR_push_descriptor; without it buffers are reached by
-/// address.
+/// Buffers are bound, so that the validation layer can watch them. Needs VK_KHR_push_descriptor; without it buffers are
+/// reached by address.
 pub const RARA_BINDINGS_BOUND: RaraBindings = 1;
 /// The constants of the frame bound and all else by address, for CPU drivers: they compile it in a fraction of the time that bound
 /// buffers take, and run it faster than addresses alone. Needs what RARA_BINDINGS_BOUND needs.

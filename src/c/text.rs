@@ -7,7 +7,7 @@ use rara::Result;
 
 use crate::boundary::{invalid, shared};
 
-/// As much of a text as fits, in whole characters, and a NUL.
+/// The part of a text that fits, in whole characters, and a NUL.
 pub(crate) fn fixed<const N: usize>(from: &str) -> [c_char; N] {
     let mut to = [0; N];
     let most = from.len().min(N - 1);

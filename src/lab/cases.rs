@@ -79,11 +79,11 @@ impl Source {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum CaseCut {
-    /// By a plane that faces the camera obliquely, so that the cut surface is seen.
+    /// A cut by a plane that faces the camera obliquely, so that the cut surface is seen.
     Face,
-    /// By a plane that contains the direction of view, so that the cut is an edge.
+    /// A cut by a plane that contains the direction of view, so that the cut is an edge.
     Edge,
-    /// By a ball that bites into the outline, from the left, above and before it.
+    /// A cut by a ball that bites into the outline, from the left, above and before it.
     Bite,
 }
 
@@ -115,7 +115,7 @@ pub struct Case {
     pub cut: CaseCut,
     pub camera: Camera,
     direction: DVec3,
-    /// Between which places along the direction the cut moves: the 15th and the 85th percentile of the centres.
+    /// The places along the direction between which the cut moves: the 15th and the 85th percentile of the centres.
     range: [f64; 2],
     centre: DVec3,
 }

@@ -146,7 +146,7 @@ impl Table {
         cells.clone().any(Cell::is_text)
     }
 
-    /// With its title as a heading.
+    /// The table with its title as a heading.
     pub fn markdown(&self) -> String {
         let mut text = format!("## {}\n\n", self.title);
         if !self.note.is_empty() {

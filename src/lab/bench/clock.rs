@@ -9,15 +9,15 @@ use crate::statistics::least;
 /// The times of one choice, milliseconds.
 #[derive(Debug, Clone, Default, Serialize)]
 pub(crate) struct Times {
-    /// On the device, the median frame.
+    /// The median frame on the device.
     pub(crate) ms: f64,
-    /// On the device, each stage at its quickest, which other work on the machine disturbs least.
+    /// Each stage at its quickest on the device, which other work on the machine disturbs least.
     pub(crate) ms_min: f64,
-    /// From recording to the picture, the median frame.
+    /// The median frame from recording to the picture.
     pub(crate) wall_ms: f64,
-    /// Of this process on all cores, the median frame; 0 where the system does not count it.
+    /// The median frame of this process on all cores; 0 where the system does not count it.
     pub(crate) cpu_ms: f64,
-    /// Of this process on all cores, the least frame.
+    /// The least frame of this process on all cores.
     pub(crate) cpu_ms_min: f64,
     /// The cost of a choice: `ms_min` on the device, or, where the device is this machine's processor and the system
     /// counts its time, `cpu_ms_min`, which other work on the machine hardly disturbs.

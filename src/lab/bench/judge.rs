@@ -62,7 +62,7 @@ pub(crate) fn truth_settings(look: &Settings) -> Settings {
         .trace_all(true)
 }
 
-/// Where the way of cutting makes a difference: where the cut by centres and the true one differ, and a little around.
+/// The region in which the way of cutting makes a difference: the cut by centres and the true one differ there or nearby.
 pub(crate) fn band(by_centres: &Picture, truth: &Picture) -> Result<Region> {
     Ok(Region::where_different(by_centres, truth, 1.0 / 255.0)?.dilated(BAND))
 }

@@ -56,7 +56,7 @@ fn with_ratios(camera: &Camera, measured: Vec<(&'static str, Measures)>) -> Vec<
     measured.into_iter().map(line).collect()
 }
 
-/// By centre, by the paper's text, by our default reading of it, and exactly; the others are compared with the last.
+/// Cuts by centre, by the paper's text, by our default reading of it, and exactly; the others are compared with the last.
 pub(crate) fn ways(look: Settings) -> [(&'static str, Settings); 4] {
     let mode = |mode| look.mode(mode);
     let paper = mode(Mode::Rara).sigma(1.0).miss(Miss::Keep);

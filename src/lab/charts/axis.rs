@@ -8,7 +8,7 @@ use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, Value
 pub enum Scale {
     #[default]
     Linear,
-    /// By their logarithms. Zeros lie on a band of their own before a break in the axis; negative values are missing.
+    /// Values lie by their logarithms. Zeros have a band of their own before a break in the axis; negative values are missing.
     Log,
 }
 
@@ -20,7 +20,7 @@ pub struct Axis {
     /// What it measures, and in which unit: "Time (ms)".
     pub label: String,
     pub scale: Scale,
-    /// From where to where it reaches; `None` is as far as the values.
+    /// The ends of the axis; `None` is as far as the values.
     pub range: Option<[f64; 2]>,
 }
 
@@ -106,21 +106,21 @@ pub(super) struct Span {
     /// The ends, of logarithms as such.
     low: f64,
     high: f64,
-    /// Between marks of an axis that is linear.
+    /// The distance between marks of an axis that is linear.
     step: f64,
     is_log: bool,
     /// A band for zeros comes first.
     pub(super) zeros: bool,
 }
 
-/// Where zeros lie on an axis with a band for them, where the axis breaks, and where other values begin; shares of its
+/// The places of zeros on an axis with a band for them, of the break, and of the first of the other values; shares of its
 /// length.
 pub(super) const ZERO: f64 = 0.035;
 pub(super) const BREAK: f64 = 0.075;
 const AFTER_BREAK: f64 = 0.1;
 
 impl Span {
-    /// Where a value lies: 0 is the beginning of the axis and 1 its end.
+    /// The place of a value: 0 is the beginning of the axis and 1 its end.
     pub(super) fn share(&self, value: f64) -> f64 {
         if self.zeros && value <= 0.0 {
             return ZERO;

@@ -8,9 +8,9 @@ use super::colours;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Colours {
-    /// From blue at minus this value, by nearly white at 0, to red at this value.
+    /// Colours from blue at minus this value, by nearly white at 0, to red at this value.
     Diverging(f64),
-    /// From light to dark between two values.
+    /// Colours from light to dark between two values.
     Sequential(f64, f64),
 }
 
@@ -49,9 +49,9 @@ pub struct HeatMap {
 }
 
 const ROW: i32 = 26;
-/// Above the cells: what the columns are, and their names.
+/// The space above the cells: what the columns are, and their names.
 const ABOVE: i32 = 62;
-/// Below the cells: the colours and what they mean.
+/// The space below the cells: the colours and what they mean.
 const BELOW: i32 = 62;
 
 impl HeatMap {

@@ -11,7 +11,7 @@ use super::{Axis, Point};
 
 /// The space for the marks and the description of the axis up.
 const LEFT: u32 = 76;
-/// Likewise of the axis across.
+/// The space for those of the axis across.
 const BELOW: u32 = 48;
 
 /// A rectangle with axes.
@@ -20,7 +20,7 @@ pub(super) struct Plot<'a> {
     pub(super) area: Area<'a>,
     /// The rectangle and what is around it.
     outer: Area<'a>,
-    /// Where the rectangle is in it.
+    /// The place of the rectangle in it.
     offset: (i32, i32),
     x: Span,
     y: Span,
@@ -110,7 +110,7 @@ impl<'a> Plot<'a> {
         ((1.0 - self.y.share(y)) * height).round() as i32
     }
 
-    /// Where a point lies.
+    /// The place of a point.
     pub(super) fn at(&self, x: f64, y: f64) -> (i32, i32) {
         (self.across(x), self.down(y))
     }

@@ -74,7 +74,7 @@ impl Scatter {
     }
 }
 
-/// Where labels stand so that they hide neither points nor each other.
+/// The places of labels, so that they hide neither points nor each other.
 struct Labels {
     /// Left, top, right and bottom of what must not be hidden.
     taken: Vec<[i32; 4]>,

@@ -161,7 +161,7 @@ fn ablation_section(results: &Results) -> Section {
     }
 }
 
-/// Which reading of tracing everything comes near the paper's numbers.
+/// Says which reading of tracing everything comes near the paper's numbers.
 fn nearest(results: &Results) -> String {
     let mut found = Vec::new();
     for (scene, rows) in &results.ablation {

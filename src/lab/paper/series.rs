@@ -18,7 +18,7 @@ use crate::table::Table;
 pub(super) enum Property {
     /// The ratio of a Gaussian's longest axis to the others.
     Anisotropy,
-    /// Where the plane stands, and so how many splats it cuts.
+    /// The place of the plane, and so how many splats it cuts.
     Place,
     Resolution,
     Count,

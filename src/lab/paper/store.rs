@@ -19,7 +19,7 @@ pub struct PaperProgress {
     pub seconds_left: Option<f64>,
 }
 
-/// Where results lie, and what they are results of.
+/// The folder in which results lie, and what they are results of.
 pub(super) struct Store<'a> {
     folder: PathBuf,
     /// What all results depend on: version, device, driver, scenes and options.

@@ -31,7 +31,7 @@ pub(super) struct Measurements {
     size: [u32; 2],
     /// What all of them have in common, such as their raster path; may be empty.
     raster: &'static str,
-    /// Those of a column follow each other.
+    /// The numbers, of which those of a column follow each other.
     all: Vec<Number>,
 }
 
@@ -58,7 +58,7 @@ impl Measurements {
         }
     }
 
-    /// Those of the same scene in other pictures.
+    /// Measurements of the same scene in other pictures.
     pub(super) fn for_pictures(&self, size: [u32; 2], raster: &'static str) -> Self {
         Self {
             scene: self.scene.clone(),

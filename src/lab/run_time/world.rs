@@ -20,7 +20,7 @@ const FOV_Y: f64 = 50.0;
 pub(super) struct World {
     pub(super) name: String,
     pub(super) scene: Gaussians,
-    /// Where the scene is from.
+    /// The file that the scene is from.
     pub(super) file: Option<PathBuf>,
     bounds: Bounds,
     cameras: Vec<Camera>,

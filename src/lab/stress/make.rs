@@ -67,7 +67,7 @@ pub(super) fn any_normal(random: &mut Random, _: &Camera) -> DVec3 {
     random.direction()
 }
 
-/// From `low` to `high`, every factor as likely as the next.
+/// A number from `low` to `high`, every factor as likely as the next.
 pub(super) fn between(random: &mut Random, low: f64, high: f64) -> f64 {
     low * (high / low).powf(random.unit())
 }

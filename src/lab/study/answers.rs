@@ -21,9 +21,9 @@ pub struct Answers {
     /// The group, 1 or 2.
     pub group: u8,
     pub background: Background,
-    /// When the study was begun, in ISO 8601.
+    /// The time at which the study was begun, in ISO 8601.
     pub begun: String,
-    /// When the file was saved.
+    /// The time at which the file was saved.
     pub saved: String,
     pub answers: Vec<Answer>,
     /// What was written about the methods.
@@ -50,7 +50,7 @@ pub struct Background {
 #[derive(Debug, Clone, PartialEq, Eq, Default, Deserialize, Serialize)]
 #[serde(default)]
 pub struct Questions {
-    /// Which properties an ideal cut has.
+    /// The properties that an ideal cut has.
     pub properties: String,
     pub limitations: String,
     pub strengths: String,

@@ -85,7 +85,7 @@ const fn gathered(bytes: u64) -> u64 {
 }
 
 // Invocations.
-/// Those of a workgroup of the passes that sort and bin.
+/// The invocations of a workgroup of the passes that sort and bin.
 const GROUP: u64 = limits::RADIX_GROUP_SIZE as u64;
 const GAUSSIANS: u64 = limits::BLOCK_SIZE as u64;
 const TILE: u64 = (limits::TILE_WIDTH * limits::TILE_HEIGHT) as u64;

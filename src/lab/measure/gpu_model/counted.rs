@@ -8,9 +8,9 @@ use rara::{Camera, Clip, ClipOp, Gaussians, Plane, Result};
 
 use super::numbers::FrameNumbers;
 
-/// Where the frames are, from the repository's root.
+/// The file of the frames, from the repository's root.
 pub const FRAMES_FILE: &str = "src/lab/measure/gpu_model/frames.txt";
-/// Where the kernels are, from the repository's root.
+/// The file of the kernels, from the repository's root.
 pub const KERNELS_FILE: &str = "src/lab/measure/gpu_model/kernels.txt";
 
 pub const SIZE: (u32, u32) = (1920, 1080);

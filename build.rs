@@ -1,5 +1,4 @@
-//! Turns `glsl/` into the crate's constants (`limits.glsl`), structs (`types.glsl`), and the SPIR-V and the interface of
-//! every shader.
+//! Turns `glsl/` into the crate's structs (`types.glsl`), and the SPIR-V and the interface of every shader.
 //!
 //! Every shader is compiled thrice from one source: with buffers behind device addresses, with bound buffers that the
 //! validation layer can watch, and with some of either for CPU drivers. With the feature `shaderc` the GLSL is compiled
@@ -11,27 +10,17 @@ use std::{env, fs};
 
 #[path = "src/codegen/mod.rs"]
 mod codegen;
-#[path = "src/fnv.rs"]
-#[allow(unreachable_pub)]
-mod fnv;
 
 use codegen::{VARIANTS, glsl, interface, manifest, pictures, spirv};
 
 fn main() {
-    for changed in [
-        "glsl",
-        "build.rs",
-        "src/codegen",
-        "src/fnv.rs",
-        "tools/pictures",
-    ] {
+    for changed in ["glsl", "build.rs", "src/codegen", "tools/pictures"] {
         println!("cargo::rerun-if-changed={changed}");
     }
     let out = PathBuf::from(env::var("OUT_DIR").expect("cargo sets OUT_DIR"));
     let write =
         |name: &str, text: String| fs::write(out.join(name), text).expect("OUT_DIR is writable");
-    let limits = read("glsl/limits.glsl");
-    write("limits.rs", glsl::constants(&limits));
+    let limits = limits();
     let types = read("glsl/types.glsl");
     write(
         "types.rs",
@@ -43,6 +32,21 @@ fn main() {
         let png = fs::read(format!("tools/pictures/{name}.png")).expect("tools/pictures/");
         write(&format!("{name}.md"), pictures::definition(name, &png));
     }
+}
+
+/// The text of `glsl/limits.glsl`, which tools/shaders has written here.
+fn limits() -> String {
+    let limits = glsl::limits(rara_base::LIMITS);
+    let file = "glsl/limits.glsl";
+    println!("cargo::rerun-if-env-changed=RARA_RENEW_LIMITS");
+    if env::var_os("RARA_RENEW_LIMITS").is_some() && read(file) != limits {
+        fs::write(file, &limits).expect("glsl/ is writable");
+    }
+    assert!(
+        read(file) == limits,
+        "{file} is not what src/base/limits.rs says: run tools/shaders"
+    );
+    limits
 }
 
 fn read(path: &str) -> String {

@@ -1,5 +1,4 @@
-// Every number that host and shaders share. build.rs turns each line into a Rust constant of the same name
-// (`rara::limits`), so a value stands here and nowhere else.
+// The numbers of src/base/limits.rs, written by tools/shaders.
 #ifndef RARA_LIMITS
 #define RARA_LIMITS
 
@@ -40,8 +39,9 @@ const float DRAWABLE_DEVIATION = 1e6;
 const uint SURVIVOR_GROUP_SIZE = 64u;
 // Splats a mesh workgroup emits: 4 vertices and 2 triangles each, half of the least that Vulkan guarantees.
 const uint MESH_GROUP_SIZE = 32u;
-// Pixels of a tile.
+// Columns of pixels of a tile.
 const uint TILE_WIDTH = 8u;
+// Rows of pixels of a tile.
 const uint TILE_HEIGHT = 8u;
 // Rows of tiles that are drawn together, column by column.
 const uint STRIP_ROWS = 8u;
@@ -62,22 +62,26 @@ const uint SHORTLIST_FROM = 9u;
 const uint SHORTLIST_SURFACES = 31u;
 // Words of a shortlist: see region/shortlist.glsl.
 const uint SHORTLIST_WORDS = 64u;
-// Workgroup size of the sort for GPUs, and the consecutive keys of such a workgroup: its partition.
+// Workgroup size of the sort for GPUs.
 const uint RADIX_GROUP_SIZE = 256u;
+// Consecutive keys of such a workgroup: its partition.
 const uint RADIX_PARTITION = 4096u;
-// The most groups of splats of one depth that are more than such a workgroup sorts, and the most parts, each of so many
-// partitions at least, into which the scene's numbers are divided to sort them.
+// The most groups of splats of one depth that are more than such a workgroup sorts.
 const uint MOST_CROWDS = 1020u;
+// The most parts into which the scene's numbers are divided to sort such a group.
 const uint MOST_STRETCHES = 256u;
+// The fewest partitions of such a part.
 const uint LEAST_STRETCH = 4u;
 // Counts of an invocation in a turn of that sort's scans.
 const uint RADIX_SCAN_COUNTS = 8u;
-// Tiles across and down a macro-tile, in which kernels for GPUs collect splats before they list those of each tile. A picture
+// Tiles across a macro-tile, in which kernels for GPUs collect splats before they list those of each tile. A picture
 // of 1920x1080 then has 255 macro-tiles, one fewer than a digit of the sort has values.
 const uint MACRO_COLUMNS = 16u;
+// Tiles down a macro-tile.
 const uint MACRO_ROWS = 8u;
 // Bits of a macro-tile's number in the key of a pair of macro-tile and splat, enough for pictures of 32768x32768.
 const uint PAIR_BITS = 17u;
+// Tiles of a macro-tile.
 const uint MACRO_TILES = MACRO_COLUMNS * MACRO_ROWS;
 // Workgroup size of the search for a macro-tile's first pair: what it divides the pairs into in a step.
 const uint MACRO_RANGE_GROUP_SIZE = 64u;
@@ -96,8 +100,9 @@ const float PRECISE_FOCAL = 2048.0;
 // and the quad becomes the splat's bounding box inside the picture.
 const float QUAD_MAX_EXTENT = 4096.0;
 // Buffers that a shader can declare, whose addresses fit in the 128 bytes of push constants that every device has beside
-// MAX_PARAMS words of parameters.
+// `MAX_PARAMS` words of parameters.
 const uint MAX_BUFFERS = 10u;
+// Words of parameters that a shader can declare.
 const uint MAX_PARAMS = 12u;
 
 #endif

@@ -8,87 +8,68 @@
 
 #[cfg(feature = "bake")]
 mod bake;
-mod camera;
-#[cfg(feature = "json")]
-pub mod camera_files;
-pub mod clip;
 #[cfg(test)]
 mod codegen;
-mod depth;
-mod error;
-mod framing;
-pub mod gpu;
 pub mod guide;
-#[cfg(feature = "json")]
-mod json;
 mod passes;
-mod picture;
-mod placement;
-mod precision;
 mod renderer;
-pub mod scene;
 mod session;
-mod setters;
-mod settings;
 mod stats;
 mod trace;
-
-// The modules that measure and test rara itself. They are public only with the feature `lab`, and any version may change
-// them.
-#[cfg(feature = "lab")]
-pub mod counted;
-#[cfg(not(feature = "lab"))]
-mod counted;
-#[cfg(feature = "lab")]
-pub mod files;
-#[cfg(not(feature = "lab"))]
-mod files;
-#[cfg(feature = "lab")]
-pub mod fnv;
-#[cfg(not(feature = "lab"))]
-mod fnv;
-#[cfg(feature = "lab")]
-pub mod limits;
-#[cfg(not(feature = "lab"))]
-mod limits;
-#[cfg(feature = "lab")]
-pub mod reference;
-// What bakes asks the reference on which side of a clip a Gaussian is, and nothing else.
-#[cfg(all(feature = "bake", not(feature = "lab")))]
-#[allow(dead_code, unreachable_pub, unused_imports)]
-mod reference;
-#[cfg(feature = "lab")]
+#[doc(hidden)]
 pub mod types;
-#[cfg(not(feature = "lab"))]
-mod types;
+
+#[cfg(feature = "json")]
+pub use rara_scene::camera_files;
+pub use rara_scene::clip;
+
+/// Vulkan without a single Gaussian: the device that is opened or lent, its memory, and the pipelines that are kept.
+pub mod gpu {
+    pub use rara_gpu::{
+        AdoptDesc, Bindings, DepthImage, Device, DeviceDesc, DeviceInfo, DeviceShape, Features,
+        LentMemory, Location, MemoryRequest, MemorySource, NamedBytes, OnCompile, PassSpan,
+        PipelineCache, PipelineCacheId, Support, Target, WriteOnly, check, failed, list_devices,
+    };
+}
+
+/// Files to Gaussians and back, and synthetic scenes.
+pub mod scene {
+    pub use rara_scene::{
+        Attribute, Bounds, Comparison, GaussianArrays, Gaussians, Kind, Layer, LayerState, Part,
+        Predicate, Property, Scene, cross_section, extent_along, generate, sh_coefficients,
+    };
+    #[cfg(feature = "formats")]
+    pub use rara_scene::{
+        Format, LoadReport, Loaded, Remark, load, load_from, load_from_with, load_with, save,
+        save_ply, saved_format,
+    };
+}
 
 /// The versions that this crate's interface is made of.
 pub use {ash, glam, gpu_allocator};
 
 #[cfg(feature = "bake")]
 pub use bake::{BakeCounts, BakeSettings, Baked, bake, bake_layer};
-pub use camera::{Camera, Ndc, Projection};
-#[doc(inline)]
-pub use clip::{Clip, ClipOp, Plane, Quadric, Shape, Surface};
-pub use depth::DepthMap;
-pub use error::{Error, Result};
-#[doc(inline)]
-pub use gpu::{OnCompile, PipelineCache};
 pub use passes::{SceneBuffers, SceneLayer, Staging};
+pub use rara_base::error::{Error, Result};
+pub use rara_base::stats::{Counts, PassStatistics};
+#[doc(inline)]
+pub use rara_gpu::{OnCompile, PipelineCache};
 #[cfg(feature = "picture")]
-pub use picture::PngCompression;
-pub use picture::{Channel, Cue, Cues, Picture};
-pub use placement::Placement;
-pub use precision::{PhiForm, Precision, Preset, ShFormat, TargetFormat};
+pub use rara_scene::PngCompression;
+#[doc(inline)]
+pub use rara_scene::{
+    Aov, Bounds, Camera, Channel, Clip, ClipOp, Cue, Cues, Decay, DepthMap, ExactForm,
+    GaussianArrays, Gaussians, Layer, LayerState, Miss, Mode, Ndc, PhiForm, Picture, Placement,
+    Plane, Precision, Preset, Projection, Quadric, Raster, Scene, Settings, ShFormat, Shape, Show,
+    Surface, TargetFormat,
+};
 pub use renderer::{
     ColorSpace, ConfiguredFrame, DepthDesc, ExpectedDepthDesc, FrameLimits, Pick, PickTicket,
     Picker, Picks, PreparedFrame, Renderer, RendererDesc,
 };
-#[doc(inline)]
-pub use scene::{Bounds, GaussianArrays, Gaussians, Layer, LayerState, Scene};
-pub use session::{Aov, Headless, HeadlessDesc, StoredPicture};
+pub use session::{Headless, HeadlessDesc, StoredPicture};
 #[cfg(feature = "view")]
 pub use session::{Line, Panel, Redraw, Windowed};
-pub use settings::{Decay, ExactForm, Miss, Mode, Raster, Settings, Show};
-pub use stats::{Counts, FrameStats, PassStatistics, PassTime, RasterChoice};
+pub use stats::{FrameStats, PassTime, RasterChoice};
 pub use trace::Trace;

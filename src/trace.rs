@@ -4,7 +4,7 @@
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
-use crate::stats::PassStatistics;
+use rara_base::stats::PassStatistics;
 
 #[cfg(feature = "json")]
 mod document;

@@ -1,5 +1,5 @@
 // A stack of the answers that make the answer of a region with parts: what it surely keeps and what it may keep, a bit each.
-// Twin: src/clip/postfix.rs.
+// Twin: src/scene/clip/postfix.rs.
 #ifndef RARA_REGION_ANSWERS
 #define RARA_REGION_ANSWERS
 #include "region/sides.glsl"

@@ -2,8 +2,8 @@
 
 use glam::{DMat3, DQuat, DVec3, Quat, Vec3};
 
-use crate::limits::ALPHA_MIN_INVERSE;
-use crate::scene::Gaussians;
+use rara_base::limits::ALPHA_MIN_INVERSE;
+use rara_scene::Gaussians;
 
 /// The least variance that a part may have, of the whole one's: thinner ones come from rounding.
 const THINNEST: f64 = 1e-8;

@@ -13,12 +13,12 @@ mod region;
 #[cfg(test)]
 mod tests;
 
-use crate::clip::Clip;
-use crate::counted::counted;
-use crate::error::{Error, Result};
-use crate::scene::{Gaussians, Layer};
-use crate::setters::setters;
-use crate::settings::{Mode, Settings};
+use rara_base::counted::counted;
+use rara_base::error::{Error, Result};
+use rara_base::setters;
+use rara_scene::clip::Clip;
+use rara_scene::settings::{Mode, Settings};
+use rara_scene::{Gaussians, Layer};
 
 use child::Child;
 use region::Region;
@@ -64,7 +64,7 @@ impl Default for BakeSettings {
 
 /// What baking has done to the Gaussians. The first three are the classes that a frame counts, whatever a camera sees.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "json", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct BakeCounts {
     /// Those that the clip leaves whole; they are kept.

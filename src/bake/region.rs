@@ -6,13 +6,13 @@ use super::child::{Part, children};
 use super::half_line::HalfLine;
 use super::rays::Rays;
 use super::{BakeSettings, Fate};
-use crate::clip::Clip;
-use crate::limits::ALPHA_MIN_INVERSE;
-use crate::reference::footprint::half_axes;
-use crate::reference::region::gaussian_side;
-use crate::reference::{Side, Vec3};
-use crate::scene::Gaussians;
-use crate::settings::{Mode, Settings};
+use rara_base::limits::ALPHA_MIN_INVERSE;
+use rara_reference::footprint::half_axes;
+use rara_reference::region::gaussian_side;
+use rara_reference::{Side, Vec3};
+use rara_scene::Gaussians;
+use rara_scene::clip::Clip;
+use rara_scene::settings::{Mode, Settings};
 
 /// What rounding and the quadrature may take from a child's distance to a surface, as a factor.
 const SLACK: f64 = 0.99;

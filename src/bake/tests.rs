@@ -6,10 +6,10 @@ use super::child::Part;
 use super::half_line::HalfLine;
 use super::rays::Rays;
 use super::*;
-use crate::clip::{ClipOp, Plane, Shape};
-use crate::placement::Placement;
-use crate::reference::{Side, clip};
-use crate::scene::{Kind, LayerState, Random, generate};
+use rara_reference::{Side, clip};
+use rara_scene::clip::{ClipOp, Plane, Shape};
+use rara_scene::placement::Placement;
+use rara_scene::{Kind, LayerState, Random, generate};
 
 /// The largest difference of a number of two parts.
 fn apart(a: &Part, b: &Part) -> f64 {

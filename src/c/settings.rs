@@ -142,7 +142,6 @@ impl RaraSettings {
                 PhiForm::Quintic => RARA_PHI_FORM_QUINTIC,
                 PhiForm::Cubic => RARA_PHI_FORM_CUBIC,
                 PhiForm::Logistic => RARA_PHI_FORM_LOGISTIC,
-                other => unreachable!("no preset has {other:?}, which C cannot say"),
             },
             key_bits: precision.key_bits,
             beam_switch: precision.beam_switch,

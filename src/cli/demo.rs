@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use rara::scene;
 use rara::{
     Camera, Clip, ClipOp, Decay, ExactForm, FrameStats, Mode, Picture, Plane, Scene, Settings,
 };
-use rara::{reference, scene};
 use rara_lab::frames::in_turn;
 use rara_lab::{maps, measure};
 
@@ -171,7 +171,7 @@ fn print_errors(
 ) -> Result<(), Failure> {
     say("\nmeasuring against the double-precision reference on the CPU ...");
     let render =
-        |settings: &Settings| reference::render::<f64>(scene, camera, clip, settings).picture;
+        |settings: &Settings| rara_reference::render::<f64>(scene, camera, clip, settings).picture;
     let exact = shots[0]
         .settings
         .mode(Mode::Exact)

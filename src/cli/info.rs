@@ -9,8 +9,8 @@ use super::failure::Failure;
 use super::output::{self, grouped};
 use super::scene_layers::LoadedLayer;
 use super::scenes::SceneArgs;
-use rara::reference::classify::{Bands, bands};
 use rara::scene::Bounds;
+use rara_reference::classify::{Bands, bands};
 
 /// Show what is in a scene
 #[derive(Debug, Args)]

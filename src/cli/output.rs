@@ -188,7 +188,7 @@ pub(super) fn picture(picture: &Picture, file: &Path, compression: PngCompressio
         (true, _) => bytes(&png()?).map(drop),
         (_, true) => {
             let png = png()?;
-            rara::files::write_atomically(file, |out| out.write_all(&png))
+            rara_base::files::write_atomically(file, |out| out.write_all(&png))
         }
         _ => picture.save(file),
     }
@@ -228,7 +228,7 @@ pub(super) fn is_same(a: &Path, b: &Path) -> bool {
 
 /// Writes a text file beside `file` and renames it into place, so that nobody sees half of one.
 pub(super) fn text(file: &Path, text: &str) -> Result<()> {
-    rara::files::write_atomically(file, |out| out.write_all(text.as_bytes()))
+    rara_base::files::write_atomically(file, |out| out.write_all(text.as_bytes()))
 }
 
 /// Makes `folder` and those it is in unless they are there, and fails where files could not be written into it.
@@ -262,7 +262,7 @@ fn check_folder(folder: &Path) -> Result<()> {
 
 /// So many of what is called `one`: "1 picture", "1 234 pictures".
 pub(super) fn counted(number: u64, one: &str) -> String {
-    rara::counted::counted(grouped(number), one)
+    rara_base::counted::counted(grouped(number), one)
 }
 
 /// The same with a verb: "1 picture is", "1 234 pictures are".

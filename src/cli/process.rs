@@ -106,7 +106,7 @@ mod signals {
             for signal in signals.forever() {
                 output::settle();
                 film::abandon();
-                let what = match rara::files::abandon() {
+                let what = match rara_base::files::abandon() {
                     0 => "no unfinished file was there",
                     _ => "the unfinished file is removed",
                 };

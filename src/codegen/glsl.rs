@@ -39,6 +39,30 @@ fn constant(line: &str) -> Option<(&'static str, &str, &str)> {
     None
 }
 
+/// A Rust text of constants, `pub const NAME: f32 = 1.0;` and `pub const NAME: u32 = 1;`, in GLSL with its comments.
+pub(crate) fn limits(rust: &str) -> String {
+    let mut out = String::from(
+        "// The numbers of src/base/limits.rs, written by tools/shaders.\n#ifndef RARA_LIMITS\n#define RARA_LIMITS\n\n",
+    );
+    for line in rust.lines() {
+        if let Some(comment) = line.strip_prefix("///") {
+            writeln!(out, "//{comment}").unwrap();
+        } else if let Some(constant) = line.strip_prefix("pub const ") {
+            let (name, rest) = constant.split_once(": ").expect("NAME: TYPE");
+            let (ty, value) = rest.split_once(" = ").expect("TYPE = VALUE;");
+            let value = value.trim_end_matches(';');
+            let (ty, suffix) = match (ty, value.parse::<u32>()) {
+                ("f32", _) => ("float", ""),
+                ("u32", Ok(_)) => ("uint", "u"),
+                ("u32", Err(_)) => ("uint", ""),
+                _ => panic!("{name}: shaders have f32 and u32 alone"),
+            };
+            writeln!(out, "const {ty} {name} = {value}{suffix};").unwrap();
+        }
+    }
+    out + "\n#endif\n"
+}
+
 /// The structs of a GLSL text as Rust. `numbers` is the text whose constants array lengths may name.
 pub(crate) fn structs(text: &str, numbers: &str) -> String {
     let lengths: HashMap<&str, usize> = numbers
@@ -115,6 +139,15 @@ pub(crate) fn structs(text: &str, numbers: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn numbers_of_rust_have_suffixes_in_glsl() {
+        let rust = "//! Numbers.\n\n/// How many.\npub const MOST: u32 = 32;\n/// All.\npub const ALL: u32 = MOST * MOST;\n\
+                    /// A share.\npub const HALF: f32 = 1.0 / 2.0;\n";
+        let glsl = "\n\n// How many.\nconst uint MOST = 32u;\n// All.\nconst uint ALL = MOST * MOST;\n\
+                    // A share.\nconst float HALF = 1.0 / 2.0;\n\n#endif\n";
+        assert!(limits(rust).ends_with(glsl), "{}", limits(rust));
+    }
 
     #[test]
     fn constants_keep_their_comments_and_lose_their_suffixes() {

@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::VARIANTS;
-use crate::fnv;
+use rara_base::fnv;
 
 /// The shaders proper: files of the folder that end in a stage's name.
 pub(crate) fn shaders(folder: &Path) -> Vec<PathBuf> {

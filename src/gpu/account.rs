@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-use crate::error::Error;
+use rara_base::error::Error;
 
 /// A buffer's or an image's name, and the device memory that it takes.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -20,9 +20,9 @@ use super::device::{Ahead, Device};
 use super::lent::Location;
 use super::memory::{Buffer, BufferDesc};
 use super::pipeline::{ComputeDesc, ComputePipeline};
-use crate::error::{Error, Result};
-use crate::files::write_atomically;
-use crate::fnv;
+use rara_base::error::{Error, Result};
+use rara_base::files::write_atomically;
+use rara_base::fnv;
 
 impl Ahead {
     /// The list in a file. `None` for drivers that compile when a pipeline is made, or keep nothing.
@@ -144,7 +144,8 @@ fn threads() -> usize {
 impl Device {
     /// Makes a pipeline of each of `wanted`, on all cores where the device is our own: a host's device is used by the thread
     /// alone that calls. Counts how long it takes. `kernel` describes those that compute.
-    pub(crate) fn making_pipelines<T: Sync, R: Send>(
+    #[doc(hidden)]
+    pub fn making_pipelines<T: Sync, R: Send>(
         &self,
         wanted: &[T],
         kernel: impl Fn(&T) -> Option<ComputeDesc<'_>>,

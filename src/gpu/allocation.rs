@@ -12,7 +12,7 @@ use super::account::{NamedBytes, Refusal};
 use super::device::Device;
 use super::lent::{Location, Memory, MemoryRequest};
 use super::memory::bytes;
-use crate::error::{Error, Result};
+use rara_base::error::{Error, Result};
 
 impl Device {
     /// Bytes of device memory that live buffers and images take.
@@ -28,7 +28,7 @@ impl Device {
     /// Sets the most bytes of device memory that all that is made on this device may take together: scenes, renderers'
     /// working memory and images; `None`, as in the beginning, for no limit but the device's. What would exceed it fails with
     /// [`Error::Budget`] before any of it is allocated. What is there already stays, also where that is more:
-    /// [`Renderer::trim`](crate::Renderer::trim) and scenes that are dropped give it back. Any thread may call this at any
+    /// `Renderer::trim` and scenes that are dropped give it back. Any thread may call this at any
     /// time.
     pub fn set_memory_budget(&self, budget: Option<u64>) {
         let most = budget.unwrap_or(u64::MAX);
@@ -41,7 +41,7 @@ impl Device {
         (most < u64::MAX).then_some(most)
     }
 
-    /// Allocations of device memory so far, freed or not. A frame within what [`Renderer::reserve`](crate::Renderer::reserve)
+    /// Allocations of device memory so far, freed or not. A frame within what `Renderer::reserve`
     /// has made room for adds none.
     pub fn allocation_count(&self) -> u64 {
         self.account().allocations.load(Ordering::Relaxed)
@@ -69,7 +69,8 @@ impl Device {
     }
 
     /// Refuses so many more bytes, for `what`, where they would exceed the budget once others have gone.
-    pub(crate) fn check_budget(&self, what: &str, more: u64, goes: u64) -> Result<()> {
+    #[doc(hidden)]
+    pub fn check_budget(&self, what: &str, more: u64, goes: u64) -> Result<()> {
         let used = self.device_bytes().saturating_sub(goes);
         let most = self.memory_budget();
         match most.filter(|most| used.saturating_add(more) > *most) {

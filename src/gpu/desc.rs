@@ -8,7 +8,7 @@ use gpu_allocator::vulkan::Allocator;
 
 use super::lent::MemorySource;
 use super::shape::DeviceShape;
-use crate::setters::setters;
+use rara_base::setters;
 
 /// The description of the device that [`Device::headless`](super::Device::headless) opens.
 #[derive(Debug, Clone)]
@@ -77,7 +77,7 @@ pub struct AdoptDesc {
     pub pipeline_cache: vk::PipelineCache,
     /// The source of all device memory, made for this device and with `buffer_device_address`. `None` means an allocator of
     /// rara's own. It is locked while a buffer or an image is made or destroyed, never by
-    /// [`Renderer::prepare`](crate::Renderer::prepare) or a draw.
+    /// `Renderer::prepare` or a draw.
     pub allocator: Option<Arc<Mutex<Allocator>>>,
     /// The source of all device memory in place of an allocator, for a host whose own is no `gpu_allocator`. `None` where there
     /// is none.

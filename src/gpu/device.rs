@@ -139,7 +139,8 @@ impl Device {
     }
 
     /// True when two handles are of one device.
-    pub(crate) fn is(&self, other: &Self) -> bool {
+    #[doc(hidden)]
+    pub fn is(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.inner, &other.inner)
     }
 
@@ -200,7 +201,7 @@ impl Device {
         found.map(|found| found.sample_counts).unwrap_or_default()
     }
 
-    #[cfg(any(feature = "view", test))]
+    #[cfg(any(feature = "view", feature = "lab", test))]
     pub(super) fn physical(&self) -> vk::PhysicalDevice {
         self.inner.physical
     }
@@ -259,19 +260,23 @@ impl Device {
         &self.inner.commands
     }
 
-    pub(crate) fn mesh_shader(&self) -> Option<&ext::mesh_shader::Device> {
+    #[doc(hidden)]
+    pub fn mesh_shader(&self) -> Option<&ext::mesh_shader::Device> {
         self.inner.mesh_shader.as_ref()
     }
 
-    pub(crate) fn push_descriptor(&self) -> Option<&khr::push_descriptor::Device> {
+    #[doc(hidden)]
+    pub fn push_descriptor(&self) -> Option<&khr::push_descriptor::Device> {
         self.inner.push_descriptor.as_ref()
     }
 
-    pub(crate) fn debug_utils(&self) -> Option<&ext::debug_utils::Device> {
+    #[doc(hidden)]
+    pub fn debug_utils(&self) -> Option<&ext::debug_utils::Device> {
         self.inner.debug_utils.as_ref()
     }
 
-    pub(crate) fn pipeline_cache(&self) -> vk::PipelineCache {
+    #[doc(hidden)]
+    pub fn pipeline_cache(&self) -> vk::PipelineCache {
         self.inner.pipeline_cache
     }
 
@@ -281,7 +286,8 @@ impl Device {
     }
 
     /// Has a function called when pipelines are made, unless one is already.
-    pub(crate) fn on_compile(&self, hook: OnCompile) {
+    #[doc(hidden)]
+    pub fn on_compile(&self, hook: OnCompile) {
         let _ = self.inner.on_compile.set(hook);
     }
 

@@ -7,7 +7,7 @@ use ash::vk;
 use super::failure::failed;
 use super::instance::{API_VERSION, Instance, no_device};
 use super::requirements::{self, Support};
-use crate::error::{Error, Result};
+use rara_base::error::{Error, Result};
 
 /// A physical device as `rara devices` shows it; its number is its place in the list.
 #[derive(Debug, Clone)]
@@ -101,7 +101,8 @@ pub(crate) unsafe fn describe(
 
 impl Instance {
     /// Every device, in the loader's order.
-    pub(crate) fn devices(&self) -> Result<Vec<(vk::PhysicalDevice, DeviceInfo)>> {
+    #[doc(hidden)]
+    pub fn devices(&self) -> Result<Vec<(vk::PhysicalDevice, DeviceInfo)>> {
         // SAFETY: the instance is alive.
         let physical = unsafe { self.raw.enumerate_physical_devices() };
         let physical = match physical {

@@ -2,10 +2,10 @@
 
 use ash::vk;
 
-use crate::error::Error;
+use rara_base::error::Error;
 
-/// The error for `call`, to be used with `map_err`: a lost device and exhausted memory get sentences of their own.
-pub(crate) fn failed(call: &'static str) -> impl FnOnce(vk::Result) -> Error {
+/// The error of a Vulkan call, to be used with `map_err`: a lost device and exhausted memory are errors of their own.
+pub fn failed(call: &'static str) -> impl FnOnce(vk::Result) -> Error {
     move |result| match result {
         vk::Result::ERROR_DEVICE_LOST => Error::DeviceLost { call },
         vk::Result::ERROR_OUT_OF_DEVICE_MEMORY => {
@@ -14,7 +14,11 @@ pub(crate) fn failed(call: &'static str) -> impl FnOnce(vk::Result) -> Error {
         vk::Result::ERROR_OUT_OF_HOST_MEMORY => {
             Error::Memory(format!("{call} ran out of host memory"))
         }
-        result => Error::Vulkan { call, result },
+        result => Error::Vulkan {
+            call,
+            code: result.as_raw(),
+            text: result.to_string(),
+        },
     }
 }
 

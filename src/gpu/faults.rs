@@ -15,16 +15,16 @@ use ash::vk::Handle;
 
 use super::instance::Instance;
 use super::{AdoptDesc, Device, testing};
-use crate::error::Result;
-pub(crate) use pretence::Pretence;
+pub use pretence::Pretence;
+use rara_base::error::Result;
 
 /// A fault: which call fails, and with which result.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Fault {
+pub struct Fault {
     /// How many fallible calls succeed before.
-    pub(crate) after: usize,
+    pub after: usize,
     /// The result of the one after them. A lost device stays lost: all later calls that can say so do.
-    pub(crate) result: vk::Result,
+    pub result: vk::Result,
 }
 
 #[derive(Default)]
@@ -60,7 +60,7 @@ fn with<R>(act: impl FnOnce(&mut State) -> R) -> R {
 }
 
 /// An instance under validation whose devices are as `pretence` says and fail as `set_among` asks from then on.
-pub(crate) fn instance(pretence: Option<Pretence>) -> Instance {
+pub fn instance(pretence: Option<Pretence>) -> Instance {
     let mut instance = Instance::new("rara", true, &[]).expect("the validation layer");
     let raw = instance.raw.clone();
     let mut v1_0 = raw.fp_v1_0().clone();
@@ -84,7 +84,7 @@ pub(crate) fn instance(pretence: Option<Pretence>) -> Instance {
 }
 
 /// A device under validation that fails as `set_among` asks.
-pub(crate) fn device(pretence: Option<Pretence>) -> Result<Device> {
+pub fn device(pretence: Option<Pretence>) -> Result<Device> {
     let instance = instance(pretence);
     let candidates = instance.devices()?;
     Device::open(
@@ -96,13 +96,13 @@ pub(crate) fn device(pretence: Option<Pretence>) -> Result<Device> {
 }
 
 /// True when fewer places are enough, as on slow drivers: the code under test is not theirs.
-pub(crate) fn is_slow() -> bool {
+pub fn is_slow() -> bool {
     let scale = std::env::var("RARA_TEST_SCALE").ok();
     scale.is_some_and(|scale| scale.parse().is_ok_and(|scale: f64| scale < 1.0))
 }
 
 /// A device as a host would lend it.
-pub(crate) fn lent(host: &Device) -> AdoptDesc {
+pub fn lent(host: &Device) -> AdoptDesc {
     let queue = host.lock_queue();
     AdoptDesc {
         api_version: host.support().api_version,
@@ -125,7 +125,7 @@ pub(crate) fn lent(host: &Device) -> AdoptDesc {
 }
 
 /// Sets which of these calls fails from now on, if any.
-pub(crate) fn set_among(among: &'static [&'static str], fault: Option<Fault>) {
+pub fn set_among(among: &'static [&'static str], fault: Option<Fault>) {
     with(|state| {
         (state.fault, state.among) = (fault, among);
         (state.calls, state.fired) = (0, None);
@@ -134,17 +134,17 @@ pub(crate) fn set_among(among: &'static [&'static str], fault: Option<Fault>) {
 }
 
 /// The call that has failed first since [`set_among`].
-pub(crate) fn fired() -> Option<&'static str> {
+pub fn fired() -> Option<&'static str> {
     with(|state| state.fired)
 }
 
 /// How often a call was made since [`set_among`].
-pub(crate) fn count(call: &str) -> usize {
+pub fn count(call: &str) -> usize {
     with(|state| state.counts.get(call).copied().unwrap_or(0))
 }
 
 /// Objects without a name, by the call that made them.
-pub(crate) fn nameless() -> Vec<&'static str> {
+pub fn nameless() -> Vec<&'static str> {
     with(|state| {
         let made = state.made.iter();
         made.filter(|(handle, _)| !state.named.contains_key(handle))
@@ -154,7 +154,7 @@ pub(crate) fn nameless() -> Vec<&'static str> {
 }
 
 /// Every debug label since the device was made, and the commands that were recorded under none.
-pub(crate) fn labels() -> (Vec<String>, Vec<&'static str>) {
+pub fn labels() -> (Vec<String>, Vec<&'static str>) {
     with(|state| (state.labels.clone(), state.unlabelled.clone()))
 }
 
@@ -178,7 +178,7 @@ fn due(call: &'static str) -> Option<vk::Result> {
 }
 
 /// The calls here that may return `VK_ERROR_DEVICE_LOST`.
-pub(crate) const CAN_BE_LOST: [&str; 4] = [
+pub const CAN_BE_LOST: [&str; 4] = [
     "vkQueueSubmit2",
     "vkWaitForFences",
     "vkDeviceWaitIdle",
@@ -230,7 +230,7 @@ macro_rules! functions {
             unsafe { std::mem::transmute::<Function, vk::$cpfn>(real($cname))($($carg),*) }
         })*
         /// Every call here that may fail.
-        pub(crate) static CALLS: [&str; [$($name),*].len()] = [$($name),*];
+        pub static CALLS: [&str; [$($name),*].len()] = [$($name),*];
 
         /// Our function in place of the driver's, with the name under which the driver's is kept.
         fn exchanged(name: &CStr) -> Option<(&'static str, *const c_void)> {

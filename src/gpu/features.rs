@@ -5,7 +5,7 @@ use std::ffi::c_void;
 use ash::vk;
 
 use super::requirements::Support;
-use crate::error::{Error, Result};
+use rara_base::error::{Error, Result};
 
 impl Support {
     /// The features to enable, as structs to be chained into the device's create info. A host that has structs with the same
@@ -140,7 +140,7 @@ impl Support {
     /// enabled then, the optional ones too.
     ///
     /// ```no_run
-    /// # use rara::{ash::vk, gpu::Support};
+    /// # use {ash::vk, rara_gpu::Support};
     /// fn completed(support: &Support, engine: vk::DeviceCreateInfo<'_>, create: impl FnOnce(&vk::DeviceCreateInfo<'_>)) {
     ///     let mut ours = support.features();
     ///     // SAFETY: what the engine has chained is its own and ours until the device is created.

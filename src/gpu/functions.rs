@@ -5,7 +5,7 @@ use std::ffi::CStr;
 use ash::vk;
 
 use super::desc::AdoptDesc;
-use crate::error::{Error, Result};
+use rara_base::error::{Error, Result};
 
 /// What is to be done where a function of the version's own is missing.
 const ENABLE: &str =

@@ -9,7 +9,7 @@ use super::failure::failed;
 use super::label::{begin_label, end_label};
 use super::lent::Memory;
 use super::memory::{Buffer, bytes};
-use crate::error::{Error, Result};
+use rara_base::error::{Error, Result};
 
 /// The description from which an image is created.
 #[derive(Debug, Clone, Copy)]
@@ -53,7 +53,8 @@ impl Device {
 }
 
 impl Image {
-    pub(crate) fn new(device: &Device, desc: &ImageDesc<'_>) -> Result<Self> {
+    #[doc(hidden)]
+    pub fn new(device: &Device, desc: &ImageDesc<'_>) -> Result<Self> {
         let limit = device.support().max_image_size;
         if desc.width == 0 || desc.height == 0 || desc.width.max(desc.height) > limit {
             let size = format!("{} x {}", desc.width, desc.height);

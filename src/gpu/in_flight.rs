@@ -4,13 +4,13 @@ use ash::vk;
 
 use super::device::Device;
 use super::failure::failed;
-use crate::error::Result;
+use rara_base::error::Result;
 
 /// How many frames may be unfinished at once: one is drawn while the next is recorded.
-pub(crate) const FRAMES: usize = 2;
+pub const FRAMES: usize = 2;
 
 /// Command buffers, fences and semaphores of the frames in flight.
-pub(crate) struct InFlight {
+pub struct InFlight {
     slots: Vec<Slot>,
     /// The slot of the next frame.
     next: usize,
@@ -29,7 +29,8 @@ struct Slot {
 }
 
 impl InFlight {
-    pub(crate) fn new(device: &Device) -> Result<Self> {
+    #[doc(hidden)]
+    pub fn new(device: &Device) -> Result<Self> {
         // From here on dropping `this` cleans up.
         let mut this = Self {
             slots: Vec::new(),
@@ -66,12 +67,14 @@ impl InFlight {
     }
 
     /// Waits for the oldest frame, so that the next one may reuse its slot.
-    pub(crate) fn wait(&mut self) -> Result<()> {
+    #[doc(hidden)]
+    pub fn wait(&mut self) -> Result<()> {
         self.wait_for(self.next)
     }
 
     /// Waits for all frames.
-    pub(crate) fn wait_for_all(&mut self) -> Result<()> {
+    #[doc(hidden)]
+    pub fn wait_for_all(&mut self) -> Result<()> {
         (0..FRAMES).try_for_each(|slot| self.wait_for(slot))
     }
 
@@ -90,12 +93,14 @@ impl InFlight {
     }
 
     /// The number of the next frame's slot, below [`FRAMES`]. After [`wait`](Self::wait) nothing uses it.
-    pub(crate) fn next(&self) -> usize {
+    #[doc(hidden)]
+    pub fn next(&self) -> usize {
         self.next
     }
 
     /// The semaphore with which the next frame's image is acquired, after [`wait`](Self::wait).
-    pub(crate) fn acquired(&self) -> vk::Semaphore {
+    #[doc(hidden)]
+    pub fn acquired(&self) -> vk::Semaphore {
         self.slots[self.next].acquired
     }
 
@@ -105,7 +110,8 @@ impl InFlight {
     /// [`wait`](Self::wait) was called before, an image was acquired with [`acquired`](Self::acquired), and everything that
     /// `record` uses lives until the frame has been waited for. `record` leaves `cmd` outside rendering. `drawn` is
     /// unsignalled.
-    pub(crate) unsafe fn submit(
+    #[doc(hidden)]
+    pub unsafe fn submit(
         &mut self,
         drawn: vk::Semaphore,
         record: impl FnOnce(vk::CommandBuffer) -> Result<()>,

@@ -13,7 +13,7 @@ use super::instance::Instance;
 use super::recorder::Groups;
 use super::requirements::offers;
 use super::shader::Shader;
-use crate::error::Result;
+use rara_base::error::Result;
 
 impl Device {
     /// As [`headless`](Self::headless), but the device notes what its pipelines are compiled to and which commands are

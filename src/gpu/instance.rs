@@ -8,17 +8,17 @@ use ash::{ext, khr, vk};
 use super::failure::failed;
 use super::requirements::offers;
 use super::validation::{self, Messages, Validation};
-use crate::error::{Error, Result};
+use rara_base::error::{Error, Result};
 
 /// The version that an instance of our own is created for; its devices may offer less.
 pub(super) const API_VERSION: u32 = vk::API_VERSION_1_3;
 
 /// An instance of our own. Dropping it destroys messenger and instance; everything made from it is destroyed first.
-pub(crate) struct Instance {
-    pub(crate) raw: ash::Instance,
-    pub(crate) validation: Option<Validation>,
+pub struct Instance {
+    pub raw: ash::Instance,
+    pub validation: Option<Validation>,
     /// True when debug labels and names are recorded, for a layer or a capture tool if there is one.
-    pub(crate) debug_utils: bool,
+    pub debug_utils: bool,
     /// Keeps the loader's library open.
     pub(super) entry: ash::Entry,
 }
@@ -26,7 +26,8 @@ pub(crate) struct Instance {
 impl Instance {
     /// Loads Vulkan and creates an instance, with the validation layer where asked for. `needed` are a window's
     /// extensions, without which this is an error.
-    pub(crate) fn new(
+    #[doc(hidden)]
+    pub fn new(
         application_name: &str,
         with_validation: bool,
         needed: &[&'static CStr],

@@ -7,8 +7,8 @@ use super::failure::failed;
 use super::memory::Buffer;
 use super::shader::{Bindings, BufferUse, MAX_BUFFERS, MAX_PARAMS, Shader};
 use super::shape::DeviceShape;
-use crate::counted::counted;
-use crate::error::{Error, Result};
+use rara_base::counted::counted;
+use rara_base::error::{Error, Result};
 
 impl Bindings {
     /// The fastest way on a device. CPU drivers load what all lanes share once from a bound buffer, and for each lane from
@@ -46,19 +46,20 @@ impl PushConstants {
 }
 
 /// A pipeline layout for the buffers of one or several shaders.
-pub(crate) struct Layout {
+pub struct Layout {
     device: Device,
-    pub(crate) raw: vk::PipelineLayout,
+    pub raw: vk::PipelineLayout,
     /// Null for [`Bindings::Address`].
     set: vk::DescriptorSetLayout,
     stages: vk::ShaderStageFlags,
     bindings: Bindings,
     /// The buffers of all stages, by ascending binding.
-    pub(crate) uses: Vec<BufferUse>,
+    pub uses: Vec<BufferUse>,
 }
 
 impl Layout {
-    pub(crate) fn new(
+    #[doc(hidden)]
+    pub fn new(
         device: &Device,
         name: &str,
         shaders: &[&Shader],
@@ -155,7 +156,8 @@ impl Layout {
     }
 
     /// Panics with a sentence unless a command has the right number of buffers and parameters.
-    pub(crate) fn check(&self, name: &str, buffers: &[&Buffer], params: &[u32]) {
+    #[doc(hidden)]
+    pub fn check(&self, name: &str, buffers: &[&Buffer], params: &[u32]) {
         let wanted = self.buffer_count();
         assert!(
             buffers.len() == wanted,
@@ -178,7 +180,8 @@ impl Layout {
     /// # Safety
     ///
     /// `cmd` must be recording on this layout's device; the buffers must outlive its execution.
-    pub(crate) unsafe fn push(
+    #[doc(hidden)]
+    pub unsafe fn push(
         &self,
         cmd: vk::CommandBuffer,
         point: vk::PipelineBindPoint,

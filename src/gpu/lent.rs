@@ -50,7 +50,7 @@ unsafe impl Send for LentMemory {}
 unsafe impl Sync for LentMemory {}
 
 /// A host's own allocator of device memory, for [`AdoptDesc::memory`](super::AdoptDesc::memory). Any thread that makes or drops
-/// something calls it, several at once; [`Renderer::prepare`](crate::Renderer::prepare) and draws never do.
+/// something calls it, several at once; `Renderer::prepare` and draws never do.
 ///
 /// # Safety
 /// What [`allocate`](Self::allocate) lends is of the device that was adopted, allocated with
@@ -62,7 +62,7 @@ pub unsafe trait MemorySource: Send + Sync {
     ///
     /// # Errors
     /// The result of Vulkan's that says why there is none: the call that needed it fails with
-    /// [`Error::Memory`](crate::Error::Memory).
+    /// [`Error::Memory`](rara_base::error::Error::Memory).
     fn allocate(&self, request: &MemoryRequest<'_>) -> Result<LentMemory, vk::Result>;
 
     /// Takes memory back. The device is done with it.

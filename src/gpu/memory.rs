@@ -10,8 +10,8 @@ use super::device::Device;
 use super::failure::failed;
 use super::lent::{Location, Memory};
 use super::write_only::WriteOnly;
-use crate::counted::counted;
-use crate::error::{Error, Result};
+use rara_base::counted::counted;
+use rara_base::error::{Error, Result};
 
 /// Allocations from this size on get memory of their own; smaller ones share blocks. With a lower limit small buffers would
 /// waste pages and the driver's limited number of allocations; with a higher one freed buffers would leave large holes.
@@ -55,7 +55,8 @@ impl Device {
 }
 
 impl Buffer {
-    pub(crate) fn new(device: &Device, desc: &BufferDesc<'_>) -> Result<Self> {
+    #[doc(hidden)]
+    pub fn new(device: &Device, desc: &BufferDesc<'_>) -> Result<Self> {
         use vk::BufferUsageFlags as Usage;
         let size = desc.size.max(1).next_multiple_of(16);
         let full = |why: &str| {
@@ -138,7 +139,8 @@ impl Buffer {
     }
 
     /// The device it is on.
-    pub(crate) fn device(&self) -> &Device {
+    #[doc(hidden)]
+    pub fn device(&self) -> &Device {
         &self.0.device
     }
 

@@ -14,7 +14,7 @@ use super::failure::failed;
 use super::instance::Instance;
 use super::shape::DeviceShape;
 use super::{functions, requirements};
-use crate::error::{Error, Result};
+use rara_base::error::{Error, Result};
 
 impl Device {
     /// Opens a device of its own, without a window.
@@ -26,7 +26,8 @@ impl Device {
 
     /// Opens the one of the instance's devices that the description means, with extensions that all usable ones among them
     /// offer.
-    pub(crate) fn open(
+    #[doc(hidden)]
+    pub fn open(
         owned: Arc<Instance>,
         candidates: Vec<(vk::PhysicalDevice, DeviceInfo)>,
         desc: &DeviceDesc,

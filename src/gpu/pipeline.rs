@@ -13,7 +13,7 @@ use super::layout::Layout;
 use super::shader::Bindings;
 use super::shader::{BufferAccess, Shader};
 use super::shape::DeviceShape;
-use crate::error::{Error, Result};
+use rara_base::error::{Error, Result};
 
 /// Entry point of every shader.
 const MAIN: &CStr = c"main";
@@ -75,7 +75,8 @@ impl ComputePipeline {
         self.0.name
     }
 
-    pub(crate) fn inner(&self) -> &Pipeline {
+    #[doc(hidden)]
+    pub fn inner(&self) -> &Pipeline {
         &self.0
     }
 
@@ -255,16 +256,17 @@ impl GraphicsPipeline {
         self.mesh
     }
 
-    pub(crate) fn inner(&self) -> &Pipeline {
+    #[doc(hidden)]
+    pub fn inner(&self) -> &Pipeline {
         &self.inner
     }
 }
 
 /// The part that both kinds of pipelines share.
-pub(crate) struct Pipeline {
-    pub(crate) name: &'static str,
-    pub(crate) raw: vk::Pipeline,
-    pub(crate) layout: Layout,
+pub struct Pipeline {
+    pub name: &'static str,
+    pub raw: vk::Pipeline,
+    pub layout: Layout,
     device: Device,
 }
 

@@ -7,7 +7,7 @@ use ash::vk;
 
 use super::device::Device;
 use super::failure::failed;
-use crate::error::Result;
+use rara_base::error::Result;
 
 /// The driver and the device that have compiled pipelines; no others can use them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

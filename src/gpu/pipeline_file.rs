@@ -7,11 +7,11 @@ use std::path::{Path, PathBuf};
 
 use super::device::{Ahead, Device};
 use super::pipeline_cache::PipelineCacheId;
-use crate::error::{Error, Result};
-use crate::files::write_atomically;
-use crate::fnv;
+use rara_base::error::{Error, Result};
+use rara_base::files::write_atomically;
+use rara_base::fnv;
 
-/// The place in which [`Headless`](crate::Headless) keeps compiled pipelines from one run to the next.
+/// The place in which `Headless` keeps compiled pipelines from one run to the next.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub enum PipelineCache {
     /// They are kept in the user's cache folder: `RARA_CACHE`, else `rara` in `XDG_CACHE_HOME`, else `~/.cache/rara` (on
@@ -58,7 +58,7 @@ fn user_folder(variable: impl Fn(&str) -> Option<std::ffi::OsString>) -> Option<
 
 /// The file of one device and driver.
 #[derive(Debug)]
-pub(crate) struct PipelineFile {
+pub struct PipelineFile {
     path: PathBuf,
     /// The seal of the data that it is known to hold.
     held: Option<Seal>,
@@ -104,7 +104,8 @@ fn is_missing(error: &io::Error) -> bool {
 
 impl PipelineFile {
     /// Gives the device the pipelines that an earlier run kept for it. `None` if nothing is to be kept.
-    pub(crate) fn open(cache: &PipelineCache, device: &Device) -> Option<Self> {
+    #[doc(hidden)]
+    pub fn open(cache: &PipelineCache, device: &Device) -> Option<Self> {
         let id = device.pipeline_cache_id();
         let path = cache.folder()?.join(name(&id));
         if let Some(ahead) = Ahead::open(device, path.with_extension("compiled")) {
@@ -129,12 +130,14 @@ impl PipelineFile {
     }
 
     /// Bytes of compiled pipelines that the file is known to hold.
-    pub(crate) fn held_bytes(&self) -> u64 {
+    #[doc(hidden)]
+    pub fn held_bytes(&self) -> u64 {
         self.held.map_or(0, |seal| seal.length)
     }
 
     /// Keeps the pipelines that the device has compiled, unless the file holds them already.
-    pub(crate) fn keep(&mut self, device: &Device) {
+    #[doc(hidden)]
+    pub fn keep(&mut self, device: &Device) {
         let kept = device
             .pipeline_cache_data()
             .and_then(|data| self.write(&data));
@@ -227,7 +230,7 @@ mod tests {
     #[test]
     fn a_file_is_used_only_if_it_is_whole_and_the_drivers_own() {
         let folder = std::env::temp_dir().join(format!("rara-pipelines-{}", std::process::id()));
-        let (id, mut data) = crate::gpu::pipeline_cache::example();
+        let (id, mut data) = crate::pipeline_cache::example();
         data.extend(0..100);
         let mut file = PipelineFile {
             path: folder.join(name(&id)),

@@ -12,7 +12,7 @@ use super::pipeline::ComputePipeline;
 use super::shader::MAX_BUFFERS;
 use super::timer::Timer;
 use super::tracker::Tracker;
-use crate::limits::GROUP_COLUMNS;
+use rara_base::limits::GROUP_COLUMNS;
 
 /// How many workgroups a dispatch has.
 #[derive(Debug, Clone, Copy)]

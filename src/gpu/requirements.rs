@@ -6,11 +6,11 @@ use ash::{ext, khr, vk};
 
 use super::failure::failed;
 use super::shader::MAX_BUFFERS;
-use crate::error::{Error, Result};
-use crate::limits::{BLOCK_SIZE, RADIX_GROUP_SIZE};
+use rara_base::error::{Error, Result};
+use rara_base::limits::{BLOCK_SIZE, RADIX_GROUP_SIZE};
 
 /// The least size for which a workgroup of the sort has room to count the digits of each subgroup.
-pub(crate) const LEAST_SUBGROUP: u32 = 8;
+pub const LEAST_SUBGROUP: u32 = 8;
 
 /// The optional features of a physical device that meets the requirements.
 ///

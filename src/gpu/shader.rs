@@ -75,7 +75,7 @@ impl Shader {
 
 /// Buffers a pass can have: device addresses that fit in the guaranteed 128 bytes of push constants beside
 /// [`MAX_PARAMS`] words.
-pub const MAX_BUFFERS: usize = crate::limits::MAX_BUFFERS as usize;
+pub const MAX_BUFFERS: usize = rara_base::limits::MAX_BUFFERS as usize;
 
 /// 32-bit parameters a pass can have.
-pub const MAX_PARAMS: usize = crate::limits::MAX_PARAMS as usize;
+pub const MAX_PARAMS: usize = rara_base::limits::MAX_PARAMS as usize;

@@ -4,14 +4,13 @@ use ash::vk;
 
 use super::devices::DeviceInfo;
 use super::requirements::Support;
-use crate::error::{Error, Result};
+use rara_base::error::{Error, Result};
 
 /// The kind of machine that runs the stages. It decides which kernels are used and how finely their work is divided;
 /// pictures depend on it only by the rounding of sums.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "serde", serde(tag = "kind", rename_all = "lowercase"))]
-#[non_exhaustive]
 pub enum DeviceShape {
     /// A driver that runs shaders on the processor's cores: few invocations that each do much.
     Cpu,
@@ -31,7 +30,8 @@ const SHARED_MEMORY: u32 = 28 << 10;
 
 impl DeviceShape {
     /// The shape of a device and the reason for it: the one that is wanted, or else the one that suits its kind.
-    pub(crate) fn of(
+    #[doc(hidden)]
+    pub fn of(
         info: &DeviceInfo,
         support: &Support,
         wanted: Option<Self>,

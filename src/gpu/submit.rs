@@ -7,7 +7,7 @@ use ash::vk;
 use super::device::Device;
 use super::failure::failed;
 use super::one_off::OneOff;
-use crate::error::Result;
+use rara_base::error::Result;
 
 impl OneOff {
     fn new(device: &Device) -> Result<Self> {

@@ -11,15 +11,15 @@ use super::device::Device;
 use super::failure::failed;
 use super::instance::Instance;
 use super::requirements::{Support, offers};
-use crate::error::{Error, Result};
+use rara_base::error::{Error, Result};
 
 /// An object that has a window and the display that the window is on.
-pub(crate) trait Window: HasWindowHandle + HasDisplayHandle {}
+pub trait Window: HasWindowHandle + HasDisplayHandle {}
 
 impl<T: HasWindowHandle + HasDisplayHandle> Window for T {}
 
 /// A window's surface. It keeps the window and the instance alive.
-pub(crate) struct Surface {
+pub struct Surface {
     loader: khr::surface::Instance,
     handle: vk::SurfaceKHR,
     // The surface is destroyed before both.
@@ -38,7 +38,8 @@ const FORMATS: [vk::Format; 5] = [
 
 impl Surface {
     /// Opens the device that the description means, among those that can show pictures in the window.
-    pub(crate) fn open(desc: &DeviceDesc, window: Arc<dyn Window>) -> Result<(Device, Self)> {
+    #[doc(hidden)]
+    pub fn open(desc: &DeviceDesc, window: Arc<dyn Window>) -> Result<(Device, Self)> {
         let display = window.display_handle().map_err(no_window)?.as_raw();
         let needed = ash_window::enumerate_required_extensions(display)
             .map_err(failed("enumerate_required_extensions"))?;

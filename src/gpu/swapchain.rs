@@ -8,10 +8,10 @@ use super::failure::failed;
 use super::image::{WHOLE, barrier, begin_rendering, to_be_drawn};
 use super::memory::Buffer;
 use super::surface::{Surface, lost};
-use crate::error::Result;
+use rara_base::error::Result;
 
 /// A window's images; none while the window has no size.
-pub(crate) struct Swapchain {
+pub struct Swapchain {
     chain: Option<Chain>,
     format: vk::SurfaceFormatKHR,
     loader: khr::swapchain::Device,
@@ -48,7 +48,8 @@ const PATIENCE_NS: u64 = 500_000_000;
 
 impl Swapchain {
     /// The swapchain of a surface and the device that was opened for it. [`fit`](Self::fit) makes its images.
-    pub(crate) fn new(device: &Device, surface: Surface) -> Result<Self> {
+    #[doc(hidden)]
+    pub fn new(device: &Device, surface: Surface) -> Result<Self> {
         let format = surface.format(device)?;
         Ok(Self {
             chain: None,
@@ -60,13 +61,15 @@ impl Swapchain {
     }
 
     /// The images' format.
-    pub(crate) fn format(&self) -> vk::Format {
+    #[doc(hidden)]
+    pub fn format(&self) -> vk::Format {
         self.format.format
     }
 
     /// Makes the images fit a window that has this size, and returns the size that they have: `None` while the window has
     /// no pixels, as it may when it is minimised.
-    pub(crate) fn fit(&mut self, window: (u32, u32)) -> Result<Option<vk::Extent2D>> {
+    #[doc(hidden)]
+    pub fn fit(&mut self, window: (u32, u32)) -> Result<Option<vk::Extent2D>> {
         if window.0 == 0 || window.1 == 0 {
             self.clear()?;
             return Ok(None);
@@ -182,7 +185,8 @@ impl Swapchain {
     ///
     /// # Safety
     /// Nothing waits for `acquired` and nothing will signal it.
-    pub(crate) unsafe fn acquire(&mut self, acquired: vk::Semaphore) -> Result<Option<usize>> {
+    #[doc(hidden)]
+    pub unsafe fn acquire(&mut self, acquired: vk::Semaphore) -> Result<Option<usize>> {
         let Some(chain) = self.chain.as_mut().filter(|chain| !chain.outdated) else {
             return Ok(None);
         };
@@ -206,7 +210,8 @@ impl Swapchain {
     }
 
     /// The semaphore that is signalled when an acquired image is drawn; [`present`](Self::present) waits for it.
-    pub(crate) fn drawn(&self, image: usize) -> vk::Semaphore {
+    #[doc(hidden)]
+    pub fn drawn(&self, image: usize) -> vk::Semaphore {
         self.chain().images[image].drawn
     }
 
@@ -215,12 +220,8 @@ impl Swapchain {
     /// # Safety
     /// `cmd` is recording on the device outside rendering. Its submission waits, in the stage of colour output, for the
     /// semaphore that the image was acquired with.
-    pub(crate) unsafe fn begin_rendering(
-        &self,
-        cmd: vk::CommandBuffer,
-        image: usize,
-        clear: [f32; 4],
-    ) {
+    #[doc(hidden)]
+    pub unsafe fn begin_rendering(&self, cmd: vk::CommandBuffer, image: usize, clear: [f32; 4]) {
         let chain = self.chain();
         let shown = &chain.images[image];
         // The barrier comes after the wait for the image, which is in this stage.
@@ -235,7 +236,8 @@ impl Swapchain {
     }
 
     /// The size of the images, if they can be copied to.
-    pub(crate) fn copied_to(&self) -> Option<(u32, u32)> {
+    #[doc(hidden)]
+    pub fn copied_to(&self) -> Option<(u32, u32)> {
         let chain = self.chain.as_ref().filter(|chain| chain.takes_copies)?;
         Some((chain.extent.width, chain.extent.height))
     }
@@ -246,7 +248,8 @@ impl Swapchain {
     /// `cmd` is the one of [`begin_rendering`](Self::begin_rendering), still inside its rendering. The copies are within the
     /// image and the buffer, no two of them in one place of the image, the images [can be copied to](Self::copied_to), and the
     /// host has written the buffer, which outlives the execution.
-    pub(crate) unsafe fn end_rendering(
+    #[doc(hidden)]
+    pub unsafe fn end_rendering(
         &self,
         cmd: vk::CommandBuffer,
         image: usize,
@@ -288,7 +291,8 @@ impl Swapchain {
     ///
     /// # Safety
     /// The image was acquired, and what draws it and signals [`drawn`](Self::drawn) was submitted.
-    pub(crate) unsafe fn present(&mut self, image: usize) -> Result<()> {
+    #[doc(hidden)]
+    pub unsafe fn present(&mut self, image: usize) -> Result<()> {
         let chain = self.chain.as_mut().expect("an image was acquired");
         let drawn = [chain.images[image].drawn];
         let (chains, images) = ([chain.handle], [image as u32]);

@@ -3,7 +3,7 @@
 use super::{Device, DeviceDesc};
 
 /// The description of the device under test: the best one, or the one that `RARA_TEST_DEVICE` names, under validation.
-pub(crate) fn desc() -> DeviceDesc {
+pub fn desc() -> DeviceDesc {
     DeviceDesc {
         selector: std::env::var("RARA_TEST_DEVICE").ok(),
         validation: true,
@@ -12,7 +12,7 @@ pub(crate) fn desc() -> DeviceDesc {
 }
 
 /// The device under test.
-pub(crate) fn device() -> Device {
+pub fn device() -> Device {
     let device = Device::headless(&desc());
     device.expect("a Vulkan device and the validation layer (tools/test installs both)")
 }

@@ -4,8 +4,8 @@ use ash::vk;
 
 use super::device::Device;
 use super::failure::failed;
-use crate::error::Result;
-use crate::stats::PassStatistics;
+use rara_base::error::Result;
+use rara_base::stats::PassStatistics;
 
 /// Timestamps around the passes of one recording. Where the device has none, it does nothing and reads nothing.
 ///
@@ -228,10 +228,7 @@ impl Timer {
             let name = self.names[pass as usize];
             let at = sums.iter().position(|sum| sum.name == name);
             let at = at.unwrap_or_else(|| {
-                sums.push(PassStatistics {
-                    name,
-                    ..PassStatistics::default()
-                });
+                sums.push(PassStatistics::new(name));
                 sums.len() - 1
             });
             let sum = &mut sums[at];

@@ -6,7 +6,7 @@ use super::device::Device;
 use super::lent::Location;
 use super::memory::{Buffer, BufferDesc};
 use super::recorder::Recorder;
-use crate::error::Result;
+use rara_base::error::Result;
 
 /// The most bytes staged at once. More would gain nothing, since a chunk takes milliseconds; with fewer, submissions would
 /// cost noticeable time.

@@ -8,7 +8,7 @@ use ash::{ext, vk};
 
 use super::failure::failed;
 use super::requirements::offers;
-use crate::error::{Error, Result};
+use rara_base::error::{Error, Result};
 
 /// The layer's name.
 pub(crate) const LAYER: &CStr = c"VK_LAYER_KHRONOS_validation";
@@ -19,7 +19,7 @@ pub(crate) const CHECKS: [vk::ValidationFeatureEnableEXT; 1] =
 
 /// Warnings and errors of the layer, in the order they came. Any thread that calls Vulkan may add to them.
 #[derive(Debug, Default)]
-pub(crate) struct Messages(Mutex<Vec<String>>);
+pub struct Messages(Mutex<Vec<String>>);
 
 impl Messages {
     fn push(&self, message: String) {
@@ -30,7 +30,8 @@ impl Messages {
     }
 
     /// Takes everything that has been collected.
-    pub(crate) fn drain(&self) -> Vec<String> {
+    #[doc(hidden)]
+    pub fn drain(&self) -> Vec<String> {
         std::mem::take(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner))
     }
 }
@@ -50,15 +51,16 @@ pub(crate) fn messenger_info(
 }
 
 /// The messenger of an instance and the messages it collects.
-pub(crate) struct Validation {
+pub struct Validation {
     loader: ext::debug_utils::Instance,
     messenger: vk::DebugUtilsMessengerEXT,
-    pub(crate) messages: Arc<Messages>,
+    pub messages: Arc<Messages>,
 }
 
 impl Validation {
     /// Attaches a messenger to an instance with `VK_EXT_debug_utils` enabled.
-    pub(crate) fn new(
+    #[doc(hidden)]
+    pub fn new(
         entry: &ash::Entry,
         instance: &ash::Instance,
         messages: Arc<Messages>,
@@ -80,7 +82,8 @@ impl Validation {
     /// # Safety
     ///
     /// Its instance must be alive, and this must be the only call.
-    pub(crate) unsafe fn destroy(&self) {
+    #[doc(hidden)]
+    pub unsafe fn destroy(&self) {
         // SAFETY: the caller vouches for the instance and that the messenger was not destroyed before.
         unsafe {
             self.loader

@@ -176,7 +176,7 @@ pub fn cases(scenes: &[Source], up: DVec3, size: (u32, u32)) -> Result<Vec<Case>
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rara::{Mode, Settings, reference};
+    use rara::{Mode, Settings};
 
     #[test]
     fn every_cut_removes_more_from_step_to_step_and_never_everything() {
@@ -186,7 +186,7 @@ mod tests {
             let settings = Settings::default().mode(Mode::Hard);
             let kept = [0.0, 0.5, 1.0].map(|share| {
                 let clip = case.at(share).expect("a clip");
-                let frame = reference::render::<f64>(&scene, &case.camera, &clip, &settings);
+                let frame = rara_reference::render::<f64>(&scene, &case.camera, &clip, &settings);
                 frame
                     .picture
                     .pixels

@@ -1,12 +1,12 @@
 //! Lists of blocks: lists those whose Gaussians differ, for one stage, and counts the workgroups that look at blocks.
 
-use crate::gpu::DeviceShape;
-use crate::limits;
 use crate::passes::plan::Plan;
 use crate::passes::recording::{Groups, Recording};
 use crate::passes::shaders::block_list;
 use crate::passes::shared;
 use crate::passes::storage::{Storage, buffers, memory};
+use rara_base::limits;
+use rara_gpu::DeviceShape;
 
 memory! {
     /// The numbers of the blocks that the next stage looks at.

@@ -4,9 +4,9 @@
 
 use glam::Vec3;
 
-use crate::limits;
-use crate::scene::Gaussians;
 use crate::types::Block;
+use rara_base::limits;
+use rara_scene::Gaussians;
 
 /// Bits of the places that a curve distinguishes along each axis: those of three axes and the kind are a key of 32.
 const BITS: u32 = 10;
@@ -132,8 +132,8 @@ fn morton(x: u32, y: u32, z: u32) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::GaussianArrays;
     use glam::Quat;
+    use rara_scene::GaussianArrays;
 
     fn scene(count: usize) -> Gaussians {
         let mut state = 1_u32;

@@ -2,12 +2,12 @@
 //! no stage reads a count on the CPU, except the tiles' lists, whose worst nobody could afford; drivers back untouched memory
 //! lazily.
 
-use crate::error::Result;
-use crate::gpu::{Buffer, BufferDesc, Device};
 use crate::passes::plan::Plan;
 use crate::passes::shared;
 use crate::passes::sizes::Sizes;
 use crate::passes::storage::Storage;
+use rara_base::error::Result;
+use rara_gpu::{Buffer, BufferDesc, Device};
 
 /// Everything the stages hand to each other.
 #[derive(Debug)]

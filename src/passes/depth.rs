@@ -3,8 +3,6 @@
 
 use std::mem::offset_of;
 
-use crate::depth::DepthMap;
-use crate::gpu::{Attachments, Drawer};
 use crate::passes::buffers::Buffers;
 use crate::passes::pipelines::{Draw, Pipelines};
 use crate::passes::plan::Plan;
@@ -17,6 +15,8 @@ use crate::passes::weight::Weight;
 use crate::passes::work::Work;
 use crate::passes::{block_list, compact, cutoff, project, sort};
 use crate::types::{FrameCounts, SplatDepth};
+use rara_gpu::{Attachments, Drawer};
+use rara_scene::depth::DepthMap;
 
 /// The splats' depths.
 pub(crate) static STAGE: Stage = Stage {

@@ -2,9 +2,9 @@
 
 use glam::Vec3;
 
-use crate::camera::Camera;
-use crate::error::{Error, Result};
-use crate::limits;
+use rara_base::error::{Error, Result};
+use rara_base::limits;
+use rara_scene::camera::Camera;
 
 /// How depths become keys: `min(bits(z) - near, span) >> shift`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -137,7 +137,7 @@ mod tests {
         // A box of twice the size in units of half the length is the same box.
         let doubled = far.map(|corner| 2.0 * corner);
         let eye = DVec3::new(0.0, 0.0, -8.0);
-        let twice = Camera { eye, ..camera };
+        let twice = camera.eye(eye);
         let halved = DepthKeys::new([(twice, doubled, 0.5)].into_iter(), 32).unwrap();
         assert_eq!(ends(halved), ends(last));
     }

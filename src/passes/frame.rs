@@ -5,7 +5,6 @@ use std::sync::LazyLock;
 use ash::vk;
 use smallvec::SmallVec;
 
-use crate::gpu::{Buffer, Recorder};
 use crate::passes::pipelines::PipelineKey;
 use crate::passes::plan::Plan;
 use crate::passes::recording::{Recording, Resources};
@@ -17,6 +16,7 @@ use crate::passes::{
     bin, blocks, classify, clip, compact, cutoff, depth, project, reclip, shared, sort, splat,
     tiles,
 };
+use rara_gpu::{Buffer, Recorder};
 
 /// All stages in the order in which a frame has them. Nothing waits or is read back in between; each stage's work follows
 /// from what the earlier ones left on the device.

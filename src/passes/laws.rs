@@ -1,7 +1,8 @@
 //! The laws by which a cut splat is weighted, from the settings.
 
-use crate::settings::{Decay, Miss, Settings};
 use crate::types;
+use rara_scene::precision::PhiForm;
+use rara_scene::settings::{Decay, Miss, Settings};
 
 /// The settings of a cut splat's weight, whatever the mode.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -27,7 +28,11 @@ impl Laws {
                 Miss::Drop => types::MISS_DROP,
                 Miss::Peak => types::MISS_PEAK,
             },
-            phi: settings.precision.phi.code(),
+            phi: match settings.precision.phi {
+                PhiForm::Quintic => types::PHI_QUINTIC,
+                PhiForm::Cubic => types::PHI_CUBIC,
+                PhiForm::Logistic => types::PHI_LOGISTIC,
+            },
         }
     }
 }

@@ -4,14 +4,14 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
-use crate::camera::Camera;
-use crate::clip::Clip;
-use crate::error::Result;
-use crate::limits;
 use crate::passes::scene_layer::SceneLayer;
 use crate::passes::view::layer_view;
 use crate::passes::{region, work};
 use crate::types::{self, LayerContent, LayerData, RegionData, SurfaceData};
+use rara_base::error::Result;
+use rara_base::limits;
+use rara_scene::camera::Camera;
+use rara_scene::clip::Clip;
 
 /// The layers and their surfaces. A copy has the same ones.
 #[derive(Debug, Clone)]

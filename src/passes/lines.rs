@@ -2,10 +2,10 @@
 
 use bytemuck::{Pod, Zeroable};
 
-use crate::error::Result;
-use crate::gpu::{Attachments, Bindings, Buffer, BufferDesc, Device, Drawer, Location};
 use crate::passes::pipelines::{Draw, Pipelines};
 use crate::passes::shaders::lines;
+use rara_base::error::Result;
+use rara_gpu::{Attachments, Bindings, Buffer, BufferDesc, Device, Drawer, Location};
 
 /// A line in the picture, as `glsl/lines.vert` reads it.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]

@@ -43,7 +43,6 @@ mod variants;
 mod view;
 mod weight;
 mod work;
-#[cfg(feature = "lab")]
 mod working;
 
 pub(crate) use buffers::{Buffers, Spare};

@@ -2,8 +2,8 @@
 
 use ash::vk;
 
-use crate::depth::DepthMap;
 use crate::types;
+use rara_scene::depth::DepthMap;
 
 /// How the host's depth hides the splats of tiles.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -5,10 +5,10 @@ use std::f64::consts::PI;
 
 use glam::{DMat3, DVec3, Mat3, Vec3};
 
-use crate::camera::{Camera, Projection};
-use crate::limits;
 use crate::passes::scene_layer::SceneLayer;
-use crate::scene::{Gaussians, Scene};
+use rara_base::limits;
+use rara_scene::camera::{Camera, Projection};
+use rara_scene::{Gaussians, Scene};
 
 /// Gaussians in the sample, about. Half of them are the largest of their layers, which stand for themselves alone: a few large
 /// ones may make most of the pairs. The rest are each so manieth of the others.

@@ -8,14 +8,14 @@ use std::time::Instant;
 
 use ash::vk;
 
-use crate::error::Result;
-use crate::gpu::{
-    Attachments, Bindings, Buffer, ComputeDesc, ComputePipeline, Device, Drawer, GraphicsDesc,
-    GraphicsPipeline, Groups, Recorder, Shader,
-};
 use crate::passes::plan::Plan;
 use crate::passes::shaders::{
     BufferList, BufferSet, Compute, ConstantList, ConstantSet, Interface,
+};
+use rara_base::error::Result;
+use rara_gpu::{
+    Attachments, Bindings, Buffer, ComputeDesc, ComputePipeline, Device, Drawer, GraphicsDesc,
+    GraphicsPipeline, Groups, Recorder, Shader,
 };
 
 /// A pipeline's identity: its shaders, their constants, and what it draws into.

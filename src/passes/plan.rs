@@ -1,11 +1,5 @@
 //! A frame's plan, made on the CPU before anything is recorded: which stages run, and the frame's constants.
 
-use crate::camera::Camera;
-use crate::clip::{Clip, ClipOp};
-use crate::counted::counted;
-use crate::error::{Error, Result};
-use crate::gpu::{DeviceShape, Location};
-use crate::limits;
 use crate::passes::depth_keys::DepthKeys;
 use crate::passes::laws::Laws;
 use crate::passes::layers::{self, Layers};
@@ -16,10 +10,16 @@ use crate::passes::tile_picture::TilePixels;
 use crate::passes::tile_work::TileWork;
 use crate::passes::view::view_data;
 use crate::passes::work::Work;
-use crate::precision::ShFormat;
-use crate::settings::{ExactForm, Raster, Settings, Show};
 use crate::types::{self, FrameData, OrderData, RoomData, SceneData, TilesData, WeightData};
 use ash::vk;
+use rara_base::counted::counted;
+use rara_base::error::{Error, Result};
+use rara_base::limits;
+use rara_gpu::{DeviceShape, Location};
+use rara_scene::camera::Camera;
+use rara_scene::clip::{Clip, ClipOp};
+use rara_scene::precision::ShFormat;
+use rara_scene::settings::{ExactForm, Raster, Settings, Show};
 
 /// A frame, decided but not recorded.
 #[derive(Debug, Clone)]

@@ -1,7 +1,6 @@
 //! Stage `project`, one invocation a survivor, computes conic, colour and depth key, the mask of tiles and, where it is
 //! drawn as one, the quad.
 
-use crate::gpu::DeviceShape;
 use crate::passes::pipelines::OfPlan;
 use crate::passes::plan::Plan;
 use crate::passes::recording::{Recording, counted};
@@ -10,8 +9,10 @@ use crate::passes::shared::{self, SCENE};
 use crate::passes::stage::Stage;
 use crate::passes::storage::{buffers, memory};
 use crate::passes::{compact, cutoff};
-use crate::settings::Show;
-use crate::types::{Quad, Splat};
+use crate::types::{self, Quad, Splat};
+use rara_gpu::DeviceShape;
+use rara_scene::precision::ShFormat;
+use rara_scene::settings::Show;
 
 pub(crate) static STAGE: Stage = Stage::when_finding_view("project", &[STORAGES], record);
 
@@ -48,7 +49,12 @@ impl OfPlan for project::Constants {
         Self {
             cut: plan.view_is_cut(),
             layered: plan.way.layered,
-            sh_format: plan.way.sh_format.code(),
+            sh_format: match plan.way.sh_format {
+                ShFormat::Byte => types::SH_BYTE,
+                ShFormat::Packed => types::SH_PACKED,
+                ShFormat::Half => types::SH_HALF,
+                ShFormat::Float => types::SH_FLOAT,
+            },
             tiles: plan.is_tiled(),
             quads: plan.needs_quads(),
             rects: plan.keeps_rects(),

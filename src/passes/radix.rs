@@ -2,14 +2,14 @@
 //! invocations read and write neighbouring memory. Stage `sort` sorts the survivors with it, and stage `bin` the pairs of
 //! macro-tile and splat.
 
-use crate::gpu::{DeviceShape, LEAST_SUBGROUP};
-use crate::limits;
 use crate::passes::pipelines::Kernel;
 use crate::passes::plan::Plan;
 use crate::passes::recording::{Groups, Recording};
 use crate::passes::shaders::{radix_count, radix_scan, radix_scatter};
 use crate::passes::shared;
 use crate::passes::storage::{Storage, buffers};
+use rara_base::limits;
+use rara_gpu::{DeviceShape, LEAST_SUBGROUP};
 
 // The shaders take for granted that every device has such workgroups, that they have an invocation a digit, whose halves are
 // alike, that counts have 16 bits, that those of the smallest subgroups have room, and that subgroups of up to 128 are whole.

@@ -2,7 +2,6 @@
 //! new surface and change what the rasteriser holds of them. The survivors, which are all in view, and their centres,
 //! colours, order and tiles stay.
 
-use crate::limits;
 use crate::passes::block_list::{self, ListFor, groups_of_blocks, groups_of_list};
 use crate::passes::plan::Plan;
 use crate::passes::recording::{Recording, counted};
@@ -12,6 +11,7 @@ use crate::passes::stage::Stage;
 use crate::passes::storage::{buffers, memory};
 use crate::passes::work::Work;
 use crate::passes::{blocks, classify, compact, cutoff, project};
+use rara_base::limits;
 
 /// The stage that finds which sides change.
 pub(crate) static RECLIP: Stage = Stage {

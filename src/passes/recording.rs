@@ -2,7 +2,6 @@
 
 use ash::vk;
 
-use crate::gpu::{self, Buffer, Recorder};
 use crate::passes::buffers::Buffers;
 use crate::passes::pipelines::{Kernel, OfPlan, PipelineKey, Pipelines};
 use crate::passes::plan::Plan;
@@ -10,6 +9,7 @@ use crate::passes::scene_buffers::SceneBuffers;
 use crate::passes::shaders::{BufferSet, Compute, Interface};
 use crate::passes::shared;
 use crate::passes::storage::Storage;
+use rara_gpu::{self, Buffer, Recorder};
 
 /// The recording of a frame's stages.
 pub(crate) struct Recording<'a, 'r> {
@@ -112,9 +112,9 @@ impl<'a, 'r> Recording<'a, 'r> {
             Target::Commands(recorder, resources) => {
                 let buffer = |storage| resources.buffer(storage);
                 let groups = match groups {
-                    Groups::Count(count) => gpu::Groups::Count(count),
+                    Groups::Count(count) => rara_gpu::Groups::Count(count),
                     Groups::Counted(offset) => {
-                        gpu::Groups::Indirect(buffer(&shared::MEMORY.counts), offset as u64)
+                        rara_gpu::Groups::Indirect(buffer(&shared::MEMORY.counts), offset as u64)
                     }
                 };
                 let pipelines = resources.pipelines;

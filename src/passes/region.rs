@@ -3,11 +3,11 @@
 
 use glam::DVec3;
 
-use crate::clip::postfix::postfix;
-use crate::clip::{Clip, ClipOp, Plane, Quadric, Surface};
-use crate::error::Result;
-use crate::settings::{Mode, Settings};
 use crate::types::{self, RegionData};
+use rara_base::error::Result;
+use rara_scene::clip::postfix::postfix;
+use rara_scene::clip::{Clip, ClipOp, Plane, Quadric, Surface};
+use rara_scene::settings::{Mode, Settings};
 
 /// The largest distance of a surface that is not taken for infinity, in the layer's units. It lies beyond every splat: a power of two
 /// below the end of single precision's range.

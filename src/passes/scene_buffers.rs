@@ -5,20 +5,20 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use ash::vk;
 use bytemuck::cast_slice;
 
-use crate::camera::Camera;
-use crate::clip::Clip;
-use crate::counted::counted;
-use crate::error::{Error, Result};
-use crate::gpu::{Buffer, BufferDesc, Device, Location, Recorder, WriteOnly};
-use crate::limits;
 use crate::passes::pair_estimate::PairSample;
 use crate::passes::scene_layer::{PackedLayer, SceneLayer, join_sets, layer_index, sizes};
 use crate::passes::sh_storage;
-use crate::precision::ShFormat;
-use crate::scene::{LayerState, Scene, check_clip, sh_coefficients};
 #[cfg(test)]
 use crate::types::Block;
 use crate::types::Gaussian;
+use rara_base::counted::counted;
+use rara_base::error::{Error, Result};
+use rara_base::limits;
+use rara_gpu::{Buffer, BufferDesc, Device, Location, Recorder, WriteOnly};
+use rara_scene::camera::Camera;
+use rara_scene::clip::Clip;
+use rara_scene::precision::ShFormat;
+use rara_scene::{LayerState, Scene, check_clip, sh_coefficients};
 
 /// A scene's Gaussians in device memory.
 #[derive(Debug)]

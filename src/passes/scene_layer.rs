@@ -4,13 +4,13 @@ use std::collections::HashMap;
 
 use glam::Vec3;
 
-use crate::clip::Clip;
-use crate::error::{Error, Result, shortened};
-use crate::limits;
 use crate::passes::{block_order, sh_storage};
-use crate::precision::ShFormat;
-use crate::scene::{Bounds, Gaussians, Layer, LayerState, Numbers, Scene, sh_coefficients};
 use crate::types::{Block, Gaussian};
+use rara_base::error::{Error, Result, shortened};
+use rara_base::limits;
+use rara_scene::clip::Clip;
+use rara_scene::precision::ShFormat;
+use rara_scene::{Bounds, Gaussians, Layer, LayerState, Numbers, Scene, sh_coefficients};
 
 /// A layer of a scene that is on the device.
 #[derive(Debug, Clone, PartialEq)]

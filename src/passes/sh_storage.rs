@@ -2,8 +2,8 @@
 
 use half::f16;
 
-use crate::precision::ShFormat;
 use crate::types;
+use rara_scene::precision::ShFormat;
 
 /// Words of a Gaussian with `numbers` coefficients, all three channels counted.
 pub(crate) fn words(format: ShFormat, numbers: usize) -> usize {

@@ -3,7 +3,7 @@
 
 use smallvec::SmallVec;
 
-use crate::gpu::{BufferAccess, BufferUse, MAX_BUFFERS, Shader};
+use rara_gpu::{BufferAccess, BufferUse, MAX_BUFFERS, Shader};
 
 /// The buffers of a program in the order of their bindings.
 pub(crate) type BufferList<B> = SmallVec<[B; MAX_BUFFERS]>;

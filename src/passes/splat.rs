@@ -5,17 +5,17 @@ use std::mem::offset_of;
 
 use ash::vk;
 
-use crate::depth::DepthMap;
-use crate::gpu::{Attachments, Drawer};
 use crate::passes::buffers::Buffers;
 use crate::passes::pipelines::{Draw, Pipelines};
 use crate::passes::plan::Plan;
 use crate::passes::shaders::splat;
 use crate::passes::storage::buffers;
-use crate::passes::weight::Weight;
+use crate::passes::weight::{self, Weight};
 use crate::passes::{cutoff, project, shared, sort};
-use crate::settings::Raster;
 use crate::types::FrameCounts;
+use rara_gpu::{Attachments, Drawer};
+use rara_scene::depth::DepthMap;
+use rara_scene::settings::Raster;
 
 /// The pipeline that a plan needs: without a clip the fragment shader holds no clip code.
 pub(crate) fn draw(plan: &Plan, attachments: Attachments) -> Draw<splat::Program> {
@@ -36,7 +36,7 @@ pub(crate) fn draw(plan: &Plan, attachments: Attachments) -> Draw<splat::Program
         phi_form: weight.phi,
         depth,
         boxes: !plan.needs_quads(),
-        show: plan.way.show.code(),
+        show: weight::show_code(plan.way.show),
     };
     Draw::new(shaders, constants, attachments, depth)
 }

@@ -1,9 +1,9 @@
 //! A stage of the frame.
 
-use crate::gpu::Attachments;
 use crate::passes::plan::Plan;
 use crate::passes::recording::Recording;
 use crate::passes::storage::Storage;
+use rara_gpu::Attachments;
 
 /// A step of the frame that is computed before the draw.
 #[derive(Debug)]

@@ -3,9 +3,9 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use crate::gpu::{Buffer, Location};
 use crate::passes::plan::Plan;
 use crate::passes::scene_buffers::SceneBuffers;
+use rara_gpu::{Buffer, Location};
 
 /// The declaration of a buffer.
 #[derive(Debug)]

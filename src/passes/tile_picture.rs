@@ -2,10 +2,10 @@
 
 use ash::vk;
 
-use crate::gpu::Buffer;
-use crate::limits;
-use crate::precision::TargetFormat;
 use crate::types;
+use rara_base::limits;
+use rara_gpu::Buffer;
+use rara_scene::precision::TargetFormat;
 
 /// How the pixels of the tiles' picture are stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

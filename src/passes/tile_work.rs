@@ -1,7 +1,7 @@
 //! How the invocations of a workgroup share its tile.
 
-use crate::gpu::DeviceShape;
-use crate::limits;
+use rara_base::limits;
+use rara_gpu::DeviceShape;
 
 /// How the invocations of a workgroup share its tile.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

@@ -4,8 +4,6 @@
 
 use std::mem::offset_of;
 
-use crate::gpu::{Buffer, DeviceShape, Drawer};
-use crate::limits;
 use crate::passes::bin::{lists, macro_tiles};
 use crate::passes::buffers::Buffers;
 use crate::passes::pipelines::{Draw, Kernel, Pipelines};
@@ -15,11 +13,13 @@ use crate::passes::shaders::{composite, tiles};
 use crate::passes::stage::{Stage, Targets};
 use crate::passes::storage::{buffers, memory};
 use crate::passes::tile_picture::TilePicture;
-use crate::passes::weight::Weight;
+use crate::passes::weight::{self, Weight};
 use crate::passes::work::Work;
 use crate::passes::{cutoff, project, reclip, shared};
-use crate::settings::Show;
 use crate::types::{self, FrameCounts};
+use rara_base::limits;
+use rara_gpu::{Buffer, DeviceShape, Drawer};
+use rara_scene::settings::Show;
 
 pub(crate) static STAGE: Stage = Stage {
     name: "tiles",
@@ -74,7 +74,7 @@ fn kernel(plan: &Plan, list: List) -> Kernel<tiles::Program> {
         local_size_y: limits::TILE_HEIGHT / work.rows,
         reclipped: plan.reclips(),
         depth_form: plan.occluders.map_or(types::DEPTH_NONE, |o| o.form),
-        show: plan.way.show.code(),
+        show: weight::show_code(plan.way.show),
         pixels: plan.way.tile_pixels.code(),
         listed: list != List::All,
     };

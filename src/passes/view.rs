@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 
-use crate::camera::{Camera, Projection};
-use crate::limits;
 use crate::types::{self, LayerView, ViewData};
+use rara_base::limits;
+use rara_scene::camera::{Camera, Projection};
 
 /// The picture of a camera, which is a part of that of `whole`, and the degree up to which colours are evaluated. No centre is
 /// deeper than `farthest`, the scene's units.

@@ -2,19 +2,17 @@
 //! mode does not use are left at one value, so that no two pipelines differ in them alone.
 
 use crate::passes::plan::Plan;
-use crate::settings::Show;
 use crate::types;
+use rara_scene::settings::Show;
 
-impl Show {
-    /// The shaders' name of it, `SHOW_*`.
-    pub(super) fn code(self) -> u32 {
-        match self {
-            Self::Colour => types::SHOW_COLOUR,
-            Self::Weight => types::SHOW_WEIGHT,
-            Self::Count => types::SHOW_COUNT,
-            Self::Mean => types::SHOW_MEAN,
-            Self::Strongest => types::SHOW_STRONGEST,
-        }
+/// The shaders' name of what a frame shows, `SHOW_*`.
+pub(super) fn show_code(show: Show) -> u32 {
+    match show {
+        Show::Colour => types::SHOW_COLOUR,
+        Show::Weight => types::SHOW_WEIGHT,
+        Show::Count => types::SHOW_COUNT,
+        Show::Mean => types::SHOW_MEAN,
+        Show::Strongest => types::SHOW_STRONGEST,
     }
 }
 

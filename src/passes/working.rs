@@ -1,8 +1,8 @@
 //! The working memory by its debug names, for tests that compare what a stage has written with the stage's twin.
 
-use crate::gpu::Buffer;
 use crate::passes::buffers::Buffers;
 use crate::passes::scene_buffers::SceneBuffers;
+use rara_gpu::Buffer;
 
 impl Buffers {
     /// The buffer of a debug name.

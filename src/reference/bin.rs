@@ -6,7 +6,7 @@
 //! ends of a row of tiles are the chord's at whichever of the row's heights is nearest to those.
 
 use super::real::Real;
-use crate::limits::{ALPHA_MIN_INVERSE, TILE_HEIGHT, TILE_WIDTH};
+use rara_base::limits::{ALPHA_MIN_INVERSE, TILE_HEIGHT, TILE_WIDTH};
 
 /// A splat's outline, as the rasteriser knows it.
 #[derive(Debug, Clone, Copy, PartialEq)]

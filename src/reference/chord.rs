@@ -8,7 +8,8 @@
 
 use super::real::{Real, Vec3};
 use super::region::{HalfSpace, keeps};
-use crate::{ClipOp, Miss};
+use rara_scene::clip::ClipOp;
+use rara_scene::settings::Miss;
 
 /// A cut splat traced by mode `rara`.
 #[derive(Debug, Clone)]

@@ -15,8 +15,10 @@ use super::region::{
     HalfSpace, RegionRest, Side, gaussian_side, reduced, surface_gaussian_side, surface_half_space,
 };
 use super::view::ViewTransform;
-use crate::limits::{ALPHA_MIN_INVERSE, BEYOND_EYE, WIDENING_REST};
-use crate::{Clip, Gaussians, Mode, Settings, Surface};
+use rara_base::limits::{ALPHA_MIN_INVERSE, BEYOND_EYE, WIDENING_REST};
+use rara_scene::Gaussians;
+use rara_scene::clip::{Clip, Surface};
+use rara_scene::settings::{Mode, Settings};
 
 /// The side of every Gaussian of the scene.
 pub fn classify<T: Real>(

@@ -6,8 +6,10 @@
 use super::footprint::half_axes;
 use super::real::Real;
 use super::region::{Side, gaussian_side};
-use crate::limits::ALPHA_MIN_INVERSE;
-use crate::{Clip, Gaussians, Mode, Settings};
+use rara_base::limits::ALPHA_MIN_INVERSE;
+use rara_scene::Gaussians;
+use rara_scene::clip::Clip;
+use rara_scene::settings::{Mode, Settings};
 
 /// The side of every Gaussian of the scene; none is [`Side::Culled`].
 pub fn clip<T: Real>(scene: &Gaussians, clip: &Clip, settings: &Settings) -> Vec<Side> {

@@ -4,7 +4,7 @@ use super::chord::missed_share;
 use super::exact::tail_ratio;
 use super::real::{Real, Vec3};
 use super::region::{Combination, HalfSpace, Sight, Symmetric, UnitSurface};
-use crate::Miss;
+use rara_scene::settings::Miss;
 
 /// A cut splat and its surfaces.
 #[derive(Debug, Clone)]

@@ -8,7 +8,10 @@ use super::footprint::Footprint;
 use super::real::{Real, Vec3};
 use super::region::{self, Combination, HalfSpace, RegionRest, Side};
 use super::view::ViewTransform;
-use crate::{Clip, ClipOp, ExactForm, Gaussians, Mode, Projection, Settings};
+use rara_scene::Gaussians;
+use rara_scene::camera::Projection;
+use rara_scene::clip::{Clip, ClipOp};
+use rara_scene::settings::{ExactForm, Mode, Settings};
 
 /// The record of a cut splat: everything that its weight in a pixel depends on.
 #[derive(Debug, Clone)]

@@ -20,7 +20,10 @@ use super::footprint::{Footprint, determinant, scaled};
 use super::real::{Real, Vec3};
 use super::region::surface_half_space;
 use super::{LayerView, layer, splat};
-use crate::{Camera, Clip, ClipOp, Gaussians, Mode, Scene, Settings};
+use rara_scene::camera::Camera;
+use rara_scene::clip::{Clip, ClipOp};
+use rara_scene::settings::{Mode, Settings};
+use rara_scene::{Gaussians, Scene};
 
 /// A linear function of u given a pixel: `at + slope . delta`, over its deviation.
 #[derive(Debug, Clone, Copy)]

@@ -1,6 +1,7 @@
 //! How far apart two pictures are, pixel by pixel.
 
-use crate::{Error, Picture, Result};
+use rara_base::error::{Error, Result};
+use rara_scene::picture::Picture;
 
 /// The differences between two pictures, pixel by pixel.
 ///

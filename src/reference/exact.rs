@@ -13,7 +13,7 @@ use super::orthant::{Direction, Threshold};
 use super::real::{Real, Vec3};
 use super::region::{HalfSpace, share};
 use super::view::ViewTransform;
-use crate::ClipOp;
+use rara_scene::clip::ClipOp;
 
 /// The function of a half-space given a pixel: normal with mean `mean[0] + mean[1] dx + mean[2] dy`.
 #[derive(Debug, Clone, Copy)]

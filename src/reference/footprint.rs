@@ -12,8 +12,9 @@ use glam::{Quat, Vec3 as Point};
 
 use super::real::{Real, Vec3, vec3};
 use super::view::ViewTransform;
-use crate::limits::{ALPHA_MIN_INVERSE, COMPENSATION_SQUARE_MIN, LOW_PASS};
-use crate::{Gaussians, Projection};
+use rara_base::limits::{ALPHA_MIN_INVERSE, COMPENSATION_SQUARE_MIN, LOW_PASS};
+use rara_scene::Gaussians;
+use rara_scene::camera::Projection;
 
 /// A Gaussian in view, from which every later stage computes.
 #[derive(Debug, Clone, Copy)]
@@ -186,7 +187,7 @@ fn stretch<T: Real>([b1, b2]: [Vec3<T>; 2], [c1, c2]: [Vec3<T>; 2]) -> T {
 }
 
 /// Columns of R(q) S.
-pub(crate) fn half_axes<T: Real>(scale: Point, rotation: Quat) -> [Vec3<T>; 3] {
+pub fn half_axes<T: Real>(scale: Point, rotation: Quat) -> [Vec3<T>; 3] {
     let [x, y, z, w] = rotation.to_array().map(|v| T::of(f64::from(v)));
     let [sx, sy, sz] = scale.to_array().map(|v| T::of(f64::from(v)));
     let (one, two) = (T::one(), T::of(2.0));

@@ -1,8 +1,8 @@
 //! View-dependent colour: real spherical harmonics up to degree 3, with the order and signs of 3DGS.
 
 use super::real::{Real, Vec3};
-use crate::limits::MAX_SH_COEFFICIENTS;
-use crate::scene::sh_coefficients;
+use rara_base::limits::MAX_SH_COEFFICIENTS;
+use rara_scene::sh_coefficients;
 
 /// Colour of a Gaussian seen along `direction` (from the eye to its centre or, in an orthographic view, along the view axis; of any length): the harmonics' sum plus 0.5,
 /// clamped below at 0. `coefficients` is `[coefficient][r, g, b]`.

@@ -4,8 +4,10 @@ use std::borrow::Cow;
 
 use super::real::Real;
 use super::view::ViewTransform;
-use crate::scene::Numbers;
-use crate::{Camera, Clip, Gaussians, Layer, Scene};
+use rara_scene::Numbers;
+use rara_scene::camera::Camera;
+use rara_scene::clip::Clip;
+use rara_scene::{Gaussians, Layer, Scene};
 
 /// A layer with what a frame asks of it.
 #[derive(Debug, Clone)]

@@ -274,7 +274,7 @@ fn many_positive<T: Real>(open: &[Threshold<T>]) -> T {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::reference::real::vec3;
+    use crate::real::vec3;
     use std::f64::consts::{PI, TAU};
 
     /// A variable whose direction is that of a vector.

@@ -5,7 +5,8 @@ use super::footprint::Footprint;
 use super::harmonics;
 use super::real::Real;
 use super::view::ViewTransform;
-use crate::{Gaussians, Settings};
+use rara_scene::Gaussians;
+use rara_scene::settings::Settings;
 
 /// A splat, ready to be drawn.
 #[derive(Debug, Clone)]

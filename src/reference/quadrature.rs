@@ -11,8 +11,11 @@
 use glam::{DMat3, DQuat, DVec2, DVec3};
 
 use super::region::surface_crossings;
-use crate::limits::LOW_PASS;
-use crate::{Camera, Clip, Gaussians, Placement, Projection};
+use rara_base::limits::LOW_PASS;
+use rara_scene::Gaussians;
+use rara_scene::camera::{Camera, Projection};
+use rara_scene::clip::Clip;
+use rara_scene::placement::Placement;
 
 /// Which rays a pixel's low-pass gathers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

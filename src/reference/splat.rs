@@ -6,8 +6,9 @@ use super::footprint::Footprint;
 use super::project::Splat;
 use super::real::Real;
 use super::view::ViewTransform;
-use crate::limits::{ALPHA_MAX, ALPHA_MIN_INVERSE};
-use crate::{Decay, Picture, Settings, Show};
+use rara_base::limits::{ALPHA_MAX, ALPHA_MIN_INVERSE};
+use rara_scene::picture::Picture;
+use rara_scene::settings::{Decay, Settings, Show};
 
 /// Rows of the picture that one thread blends at a time.
 const BAND: u32 = 16;

@@ -1,8 +1,9 @@
 //! The camera as the stages use it, in the reference's own number type.
 
 use super::real::{Real, Vec3};
-use crate::limits::CLAMP_MARGIN;
-use crate::{Camera, Placement, Projection};
+use rara_base::limits::CLAMP_MARGIN;
+use rara_scene::camera::{Camera, Projection};
+use rara_scene::placement::Placement;
 
 /// The camera's numbers that the stages need. In f32 they are those that the GPU is given.
 #[derive(Debug, Clone, Copy)]

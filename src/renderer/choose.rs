@@ -1,9 +1,9 @@
 //! Choices that suit a device: how splats become pixels on it, and how its sort is divided.
 
-use crate::error::{Error, Result};
-use crate::gpu::{DeviceShape, Support};
-use crate::limits;
-use crate::settings::{Raster, Settings};
+use rara_base::error::{Error, Result};
+use rara_base::limits;
+use rara_gpu::{DeviceShape, Support};
+use rara_scene::settings::{Raster, Settings};
 
 /// The properties of a host's targets that decide whether tiles can draw into them.
 #[derive(Debug, Clone, Copy)]
@@ -96,10 +96,8 @@ mod tests {
     use super::*;
 
     fn chosen(shape: DeviceShape, mesh_shader: bool, targets: Targets) -> Raster {
-        let support = Support {
-            mesh_shader,
-            ..Support::default()
-        };
+        let mut support = Support::default();
+        support.mesh_shader = mesh_shader;
         let settings = Settings::default();
         let (raster, reason) = raster(&settings, &support, shape, targets).expect("a choice");
         assert!(!reason.is_empty());

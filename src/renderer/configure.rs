@@ -12,18 +12,18 @@ use super::outcome::Submission;
 use super::pair_room::Retry;
 use super::request::FrameRequest;
 use super::{ConfiguredFrame, Renderer};
-use crate::camera::Camera;
-use crate::clip::Clip;
-use crate::depth::DepthMap;
-use crate::error::{Error, Result};
-use crate::gpu::Bindings;
-use crate::limits;
 use crate::passes::{
     Kept, Occluders, Plan, SceneBuffers, SceneFacts, SceneLayer, Targets, TilePixels, TileWork,
     Work,
 };
-use crate::precision::ShFormat;
-use crate::settings::{Raster, Settings};
+use rara_base::error::{Error, Result};
+use rara_base::limits;
+use rara_gpu::Bindings;
+use rara_scene::camera::Camera;
+use rara_scene::clip::Clip;
+use rara_scene::depth::DepthMap;
+use rara_scene::precision::ShFormat;
+use rara_scene::settings::{Raster, Settings};
 
 impl Renderer {
     /// Decides what a frame needs, and allocates and compiles the missing parts. The camera's picture is the

@@ -2,10 +2,10 @@
 
 use ash::vk;
 
-use crate::depth::DepthMap;
-use crate::error::{Error, Result};
-use crate::gpu::{Attachments, Bindings, DepthAttachment, Device, Target};
-use crate::setters::setters;
+use rara_base::error::{Error, Result};
+use rara_base::setters;
+use rara_gpu::{Attachments, Bindings, DepthAttachment, Device, Target};
+use rara_scene::depth::DepthMap;
 
 /// What the numbers of a host's colour attachment stand for. Splats are trained, and blended, as a display stores colours: by
 /// the curve of sRGB. What meets the host's pixels is then theirs.

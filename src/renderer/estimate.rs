@@ -1,7 +1,7 @@
 //! The estimate of a frame's pairs of tile and splat, which is made anew only where what it follows from has changed.
 
-use crate::camera::Camera;
 use crate::passes::SceneBuffers;
+use rara_scene::camera::Camera;
 
 /// The estimate that was made last.
 #[derive(Debug, Default)]

@@ -2,16 +2,16 @@
 //! does so at its first places. Each failure ends in an error and leaves nothing behind.
 
 use super::*;
-use crate::camera::Camera;
-use crate::clip::{Clip, ClipOp, Plane};
-use crate::gpu::faults::{self, CAN_BE_LOST, Fault};
-use crate::gpu::{Bindings, BufferDesc, Drawer, ImageDesc, Location};
 use crate::passes::{SceneBuffers, Staging};
-use crate::precision::ShFormat;
-use crate::scene::{Bounds, Kind, generate};
-use crate::settings::Settings;
 use ash::vk::Result as Code;
 use glam::DVec3;
+use rara_gpu::faults::{self, CAN_BE_LOST, Fault};
+use rara_gpu::{Bindings, BufferDesc, Drawer, ImageDesc, Location};
+use rara_scene::camera::Camera;
+use rara_scene::clip::{Clip, ClipOp, Plane};
+use rara_scene::precision::ShFormat;
+use rara_scene::settings::Settings;
+use rara_scene::{Bounds, Kind, generate};
 
 const FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 

@@ -1,11 +1,11 @@
 //! The frames that may be unfinished at once, and what is known of each once it was waited for.
 
 use super::outcome::Submission;
-use crate::depth::DepthMap;
-use crate::error::Result;
-use crate::gpu::{Buffer, BufferDesc, Device, Location, Timer};
 use crate::passes::{Plan, Targets, Work};
 use crate::types::{self, FrameCounts};
+use rara_base::error::Result;
+use rara_gpu::{Buffer, BufferDesc, Device, Location, Timer};
+use rara_scene::depth::DepthMap;
 
 /// What [`Renderer::configure`](super::Renderer::configure) has decided about a frame.
 #[derive(Debug, Clone)]

@@ -1,14 +1,14 @@
 //! The most that frames will ask for, so that room for them is made before the first one.
 
 use super::pair_room;
-use crate::camera::Camera;
-use crate::clip::{Clip, ClipOp, Plane, Quadric, Surface};
-use crate::counted::counted;
-use crate::error::{Error, Result};
-use crate::limits;
-use crate::precision::ShFormat;
-use crate::setters::setters;
-use crate::settings::{Mode, Settings};
+use rara_base::counted::counted;
+use rara_base::error::{Error, Result};
+use rara_base::limits;
+use rara_base::setters;
+use rara_scene::camera::Camera;
+use rara_scene::clip::{Clip, ClipOp, Plane, Quadric, Surface};
+use rara_scene::precision::ShFormat;
+use rara_scene::settings::{Mode, Settings};
 
 /// The most that frames will ask for, for [`Renderer::reserve`](super::Renderer::reserve): [`FrameLimits::new`] is the usual,
 /// and a host sets what it wants otherwise.

@@ -5,10 +5,10 @@ use std::sync::Arc;
 use super::estimate::PairEstimate;
 use super::pair_room::PairRoom;
 use super::request::FrameRequest;
-use crate::error::{Error, Result};
-use crate::gpu::Device;
 use crate::passes::{Buffers, Plan, Sizes, Spare};
-use crate::settings::Raster;
+use rara_base::error::{Error, Result};
+use rara_gpu::Device;
+use rara_scene::settings::Raster;
 
 /// The buffers that all frames share, one after the other.
 #[derive(Debug, Default)]
@@ -159,7 +159,6 @@ impl WorkingMemory {
     }
 
     /// The buffers, if a frame has been configured.
-    #[cfg_attr(not(any(feature = "lab", feature = "view")), allow(dead_code))]
     pub(super) fn allocated(&self) -> Option<&Buffers> {
         self.buffers.as_deref()
     }

@@ -6,12 +6,12 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use ash::vk;
 
-use crate::depth::DepthMap;
-use crate::error::{Error, Result};
-use crate::gpu::Device;
 use crate::passes::Kept;
-use crate::placement::Placement;
 use crate::stats::RasterChoice;
+use rara_base::error::{Error, Result};
+use rara_gpu::Device;
+use rara_scene::depth::DepthMap;
+use rara_scene::placement::Placement;
 
 mod choose;
 mod configure;
@@ -34,7 +34,6 @@ mod shared;
 mod stats;
 #[cfg(test)]
 mod tests;
-#[cfg(feature = "lab")]
 mod working;
 
 pub use desc::{ColorSpace, DepthDesc, ExpectedDepthDesc, RendererDesc};

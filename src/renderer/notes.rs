@@ -2,7 +2,7 @@
 //! at trace level each frame and the outcome of the oldest one.
 
 use super::{ConfiguredFrame, Renderer};
-use crate::counted::counted;
+use rara_base::counted::counted;
 
 impl Renderer {
     /// Writes what is new about a frame that has been configured.

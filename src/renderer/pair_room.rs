@@ -1,7 +1,7 @@
 //! How many pairs of tile and splat a frame has room for. It follows from earlier frames, since nothing is read back within
 //! one, and from an estimate, so that a first frame has the room too.
 
-use crate::error::{Error, Result};
+use rara_base::error::{Error, Result};
 
 /// The room before any frame has shown how many pairs there are: this many a Gaussian, where most are small, and this many
 /// a tile, where they are few and large.

@@ -7,15 +7,15 @@ use ash::vk;
 use super::Renderer;
 use super::desc::{ColorSpace, RendererDesc};
 use super::request::FrameRequest;
-use crate::camera::Camera;
-use crate::clip::Clip;
-use crate::error::{Error, Result};
-use crate::gpu::{Buffer, BufferDesc, Device, Location, Recorder, Target};
-use crate::limits;
 use crate::passes::{SceneBuffers, TilePicture};
-use crate::placement::Placement;
-use crate::precision::TargetFormat;
-use crate::settings::{Raster, Settings, Show};
+use rara_base::error::{Error, Result};
+use rara_base::limits;
+use rara_gpu::{Buffer, BufferDesc, Device, Location, Recorder, Target};
+use rara_scene::camera::Camera;
+use rara_scene::clip::Clip;
+use rara_scene::placement::Placement;
+use rara_scene::precision::TargetFormat;
+use rara_scene::settings::{Raster, Settings, Show};
 
 /// Finds the Gaussians that pixels show most of, for a host that selects by a click or a rectangle.
 ///
@@ -297,13 +297,11 @@ fn part_of(camera: &Camera, rect: vk::Rect2D) -> Result<Camera> {
             camera.width, camera.height
         )));
     }
-    Ok(Camera {
-        width,
-        height,
-        cx: camera.cx - f64::from(x),
-        cy: camera.cy - f64::from(y),
-        ..*camera
-    })
+    Ok(camera
+        .width(width)
+        .height(height)
+        .cx(camera.cx - f64::from(x))
+        .cy(camera.cy - f64::from(y)))
 }
 
 /// Bytes of what is read back about so many pixels: of the tiles' begins, padded so that pixels begin at a multiple of their

@@ -6,9 +6,9 @@ use ash::vk;
 
 use super::frame::FrameState;
 use super::{ConfiguredFrame, PreparedFrame, Renderer, out_of_order};
-use crate::error::Result;
-use crate::gpu::{DepthImage, Drawer, Recorder};
 use crate::passes::{self, Kept, Resources, SceneBuffers, Work, tiles};
+use rara_base::error::Result;
+use rara_gpu::{DepthImage, Drawer, Recorder};
 
 impl Renderer {
     /// Records a frame's stages up to the draw, outside any rendering scope. `depth` is what the host has drawn already, for a

@@ -1,11 +1,11 @@
 //! What is asked of a frame.
 
 use super::outcome::Submission;
-use crate::camera::Camera;
-use crate::clip::Clip;
 use crate::passes::SceneBuffers;
-use crate::precision::TargetFormat;
-use crate::settings::Settings;
+use rara_scene::camera::Camera;
+use rara_scene::clip::Clip;
+use rara_scene::precision::TargetFormat;
+use rara_scene::settings::Settings;
 
 /// The picture that a frame is to show, and how the frame is submitted.
 #[derive(Debug, Clone, Copy)]

@@ -7,13 +7,13 @@ use super::frames::FramesInFlight;
 use super::limits::FrameLimits;
 use super::pair_room::PairRoom;
 use super::{PreparedFrame, Renderer, configure};
-use crate::camera::Camera;
-use crate::clip::Clip;
-use crate::error::Result;
-use crate::limits;
 use crate::passes::{Plan, SceneBuffers, SceneFacts, SceneLayer, Sizes, Work};
-use crate::scene::{Gaussians, Layer};
-use crate::settings::Settings;
+use rara_base::error::Result;
+use rara_base::limits;
+use rara_scene::camera::Camera;
+use rara_scene::clip::Clip;
+use rara_scene::settings::Settings;
+use rara_scene::{Gaussians, Layer};
 
 impl Renderer {
     /// Compiles the pipelines and allocates the working memory of all frames within limits: none of them then compiles or

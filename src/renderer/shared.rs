@@ -2,9 +2,9 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use crate::error::Result;
-use crate::gpu::{Bindings, Device};
 use crate::passes::{Pipelines, Plan, Targets};
+use rara_base::error::Result;
+use rara_gpu::{Bindings, Device};
 
 /// The pipelines for each of the [`Bindings`].
 type ByBindings = [Option<Arc<Pipelines>>; 3];

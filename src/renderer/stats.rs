@@ -3,11 +3,12 @@
 use super::frames::{Decision, RecordedFrame};
 use super::outcome::{Outcome, Submission};
 use super::{ConfiguredFrame, Renderer};
-use crate::gpu::{PassSpan, Timer};
 use crate::passes::DRAW;
-use crate::settings::Raster;
-use crate::stats::{Counts, FrameStats, PassStatistics, PassTime, RasterChoice};
+use crate::stats::{FrameStats, PassTime, RasterChoice};
 use crate::types::FrameCounts;
+use rara_base::stats::{Counts, PassStatistics};
+use rara_gpu::{PassSpan, Timer};
+use rara_scene::settings::Raster;
 
 impl Renderer {
     /// How splats became pixels in the frame that [`counts`](Self::counts) is about, and why in that way.

@@ -3,14 +3,14 @@
 use std::collections::BTreeMap;
 
 use super::*;
-use crate::camera::Camera;
-use crate::clip::{Clip, ClipOp, Plane};
-use crate::gpu::{Drawer, ImageDesc, testing};
 use crate::passes::SceneBuffers;
-use crate::precision::ShFormat;
-use crate::scene::{Bounds, Kind, generate};
-use crate::settings::{Raster, Settings};
 use glam::DVec3;
+use rara_gpu::{Drawer, ImageDesc, testing};
+use rara_scene::camera::Camera;
+use rara_scene::clip::{Clip, ClipOp, Plane};
+use rara_scene::precision::ShFormat;
+use rara_scene::settings::{Raster, Settings};
+use rara_scene::{Bounds, Kind, generate};
 
 const FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 

@@ -112,7 +112,7 @@ fn widened(low: f64, high: f64, by: f64) -> (f64, f64) {
 mod tests {
     use super::*;
     use crate::placement::Placement;
-    use crate::scene::{Gaussians, LayerState};
+    use crate::{Gaussians, LayerState};
     use glam::{DQuat, Quat, Vec3};
 
     fn line(positions: impl Iterator<Item = f32>) -> Gaussians {

@@ -4,7 +4,7 @@ use glam::{DMat2, DMat3, DQuat, DVec2, DVec3};
 
 use super::Gaussians;
 use crate::clip::Plane;
-use crate::limits::ALPHA_MIN_INVERSE;
+use rara_base::limits::ALPHA_MIN_INVERSE;
 
 /// The cross-section of Gaussians by a plane: flat Gaussians on it, whose opacity at each of its points is the opacity of the
 /// Gaussian there. What it is nowhere 1/255 of is left out. Colours and their order stay.
@@ -13,9 +13,10 @@ use crate::limits::ALPHA_MIN_INVERSE;
 /// `mu - g S n / v` and covariance `S - S n (S n)^T / v`, plus `g^2 / 2 v`, with the centre's distance `g = n.mu + d` and the
 /// variance `v = n.S n` along the normal (the update of a Kalman filter that has observed the distance without noise).
 ///
-/// Drawn by a camera that faces the plane, with [`Show::Mean`](crate::Show::Mean), it is the slice that the plane makes.
+/// Drawn by a camera that faces the plane, with [`Show::Mean`](crate::settings::Show::Mean), it is the slice that the plane makes.
 ///
 /// ```
+/// # use rara_scene as rara;
 /// use rara::glam::{DVec3, Quat, Vec3};
 /// use rara::{Gaussians, Plane, scene::cross_section};
 ///
@@ -116,7 +117,7 @@ fn restricted(mean: DVec3, axes: DMat3, plane: &Plane, across: [DVec3; 2]) -> Op
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Kind, generate};
+    use crate::{Kind, generate};
 
     /// The opacity of a Gaussian at a point.
     fn opacity_at(gaussians: &Gaussians, index: usize, point: DVec3) -> f64 {

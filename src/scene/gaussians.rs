@@ -2,8 +2,8 @@
 
 use glam::{Quat, Vec3};
 
-use crate::counted::counted;
-use crate::error::{Error, Result};
+use rara_base::counted::counted;
+use rara_base::error::{Error, Result};
 
 /// The highest degree of spherical harmonics.
 pub(super) const MAX_SH_DEGREE: u32 = 3;
@@ -13,7 +13,7 @@ const UNIT: f32 = 1e-3;
 /// A set of 3D Gaussians, one array per attribute.
 ///
 /// [`new`](Self::new) takes them as whole arrays, [`push`](Self::push) one by one, and files are read by
-/// [`scene::load`](crate::scene::load). Whatever is done to them, the arrays fit each other. Everything in them is finite,
+/// [`scene::load`](crate::load). Whatever is done to them, the arrays fit each other. Everything in them is finite,
 /// rotations are unit quaternions, scales are not negative and opacities between 0 and 1: the loaders repair or drop what
 /// is not and report it, and `new` refuses it, so that no later stage has to ask.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -241,7 +241,7 @@ impl Gaussians {
     }
 
     /// Refuses what cannot be drawn, as [`new`](Self::new) does.
-    #[cfg_attr(not(feature = "ply"), allow(dead_code))]
+    #[cfg_attr(not(feature = "formats"), allow(dead_code))]
     pub(super) fn check(&self) -> Result<()> {
         self.0.check().map_err(Error::Invalid)
     }

@@ -1,11 +1,11 @@
 //! A scene is a list of layers: Gaussians with a name that are placed, faded and hidden together.
 
+use crate::Gaussians;
 use crate::clip::Clip;
-use crate::error::{Error, Result};
+use crate::numbers::{self, Numbers};
 use crate::placement::Placement;
-use crate::scene::Gaussians;
-use crate::scene::numbers::{self, Numbers};
-use crate::setters::setters;
+use rara_base::error::{Error, Result};
+use rara_base::setters;
 
 /// The state of a layer, which may change from frame to frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -36,7 +36,7 @@ impl Default for LayerState {
 }
 
 impl LayerState {
-    /// Checks the state as the upload and [`Renderer::configure`](crate::Renderer::configure) do, so that a mistake is
+    /// Checks the state as the upload and `Renderer::configure` do, so that a mistake is
     /// found earlier; `name` is the layer's, for the message.
     ///
     /// # Errors
@@ -59,7 +59,7 @@ impl LayerState {
 }
 
 /// That a frame can have the clip of a layer.
-pub(crate) fn check_clip(name: &str, clip: Option<&Clip>) -> Result<()> {
+pub fn check_clip(name: &str, clip: Option<&Clip>) -> Result<()> {
     match clip.map(Clip::check) {
         Some(Err(error)) => Err(Error::Invalid(format!(
             "the clip of layer '{name}': {error}"
@@ -100,7 +100,7 @@ impl<'a> Layer<'a> {
 
     /// The same layer with a clip of its own in place of the frame's, which then has no say in it: a clip without surfaces
     /// keeps the whole layer. It stands in the scene: neither the layer's placement moves it nor
-    /// [`Renderer::set_placement`](crate::Renderer::set_placement).
+    /// `Renderer::set_placement`.
     #[must_use]
     pub fn clipped(mut self, clip: Clip) -> Self {
         self.clip = Some(clip);
@@ -118,7 +118,8 @@ impl<'a> Layer<'a> {
     }
 
     /// The same layer of other Gaussians, one in place of each, which are shown and drawn in the same order.
-    pub(crate) fn of<'b>(&self, gaussians: &'b Gaussians) -> Layer<'b>
+    #[doc(hidden)]
+    pub fn of<'b>(&self, gaussians: &'b Gaussians) -> Layer<'b>
     where
         'a: 'b,
     {
@@ -135,7 +136,8 @@ impl<'a> Layer<'a> {
     ///
     /// # Errors
     /// As of [`LayerState::check`], and [`Error::Invalid`] for a clip of too many surfaces.
-    pub(crate) fn check(&self) -> Result<()> {
+    #[doc(hidden)]
+    pub fn check(&self) -> Result<()> {
         self.state.check(&self.name)?;
         check_clip(&self.name, self.clip.as_ref())
     }
@@ -165,6 +167,7 @@ impl<'a> Layer<'a> {
 /// two Gaussians are equally deep, the earlier layer's is in front, unless the layers are [parts](Layer::numbered) of one set.
 ///
 /// ```
+/// # use rara_scene as rara;
 /// use rara::{Gaussians, Layer, LayerState, Scene};
 ///
 /// let (skin, vessels) = (Gaussians::default(), Gaussians::default());
@@ -190,7 +193,8 @@ impl<'a> Scene<'a> {
     ///
     /// # Errors
     /// [`Error::Invalid`] where that is not so.
-    pub(crate) fn check(&self) -> Result<()> {
+    #[doc(hidden)]
+    pub fn check(&self) -> Result<()> {
         if self.layers.is_empty() {
             return Err(Error::Invalid("a scene has at least one layer".into()));
         }
@@ -199,7 +203,8 @@ impl<'a> Scene<'a> {
     }
 
     /// The numbers of each layer's Gaussians.
-    pub(crate) fn numbers(&self) -> impl Iterator<Item = Numbers<'a>> {
+    #[doc(hidden)]
+    pub fn numbers(&self) -> impl Iterator<Item = Numbers<'a>> {
         let mut before = 0;
         self.layers.iter().map(move |layer| {
             let numbers = match layer.numbers {

@@ -5,7 +5,7 @@ use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
 
 use super::{Format, Gaussians, LoadReport, Property, ply};
-use crate::error::{Error, Result};
+use rara_base::error::{Error, Result};
 
 /// What a format reads: a file of which nothing has been read yet.
 pub(super) struct Input<'a> {

@@ -1,12 +1,11 @@
 //! The numbers of a scene's Gaussians: of two that are equally deep, the one of the smaller number is in front.
 
 use super::Layer;
-use crate::counted::counted;
-use crate::error::{Error, Result};
+use rara_base::counted::counted;
+use rara_base::error::{Error, Result};
 
 /// The numbers that the Gaussians of a layer have in its scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[cfg_attr(not(feature = "lab"), allow(unreachable_pub))]
 pub struct Numbers<'a> {
     /// The number of the set's first Gaussian, which the layer is a part of or the whole.
     first: u32,
@@ -30,12 +29,12 @@ impl<'a> Numbers<'a> {
     }
 
     /// The number of one of the layer's Gaussians.
-    pub(crate) fn of(&self, index: u32) -> u32 {
+    pub fn of(&self, index: u32) -> u32 {
         self.first + self.in_set.map_or(index, |numbers| numbers[index as usize])
     }
 
     /// The set that a layer with these numbers is a part of, by its first number; `None` where the layer is the whole of it.
-    pub(crate) fn set(&self) -> Option<u32> {
+    pub fn set(&self) -> Option<u32> {
         self.in_set.map(|_| self.first)
     }
 }
@@ -87,7 +86,7 @@ pub(super) fn check(layers: &[Layer<'_>], count: usize) -> Result<()> {
 
 #[cfg(test)]
 mod tests {
-    use crate::scene::{Gaussians, Kind, Layer, Scene, generate};
+    use crate::{Gaussians, Kind, Layer, Scene, generate};
 
     fn numbers(scene: &Scene<'_>) -> Vec<Vec<u32>> {
         let of_layer = |(layer, numbers): (&Layer<'_>, super::Numbers<'_>)| {

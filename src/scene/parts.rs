@@ -1,8 +1,8 @@
 //! A set of Gaussians in parts, each of which becomes a layer.
 
 use super::{GaussianArrays, Gaussians};
-use crate::counted::counted;
-use crate::error::{Error, Result};
+use rara_base::counted::counted;
+use rara_base::error::{Error, Result};
 
 /// Gaussians that are a part of a set, as [`Gaussians::into_parts`] and [`Predicate::split`](super::Predicate::split) make
 /// them; [`Layer::numbered`](super::Layer::numbered) makes a layer of one.
@@ -118,7 +118,7 @@ impl GaussianArrays {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Kind, generate};
+    use crate::{Kind, generate};
 
     #[test]
     fn parts_hold_every_gaussian_once_and_in_order() {

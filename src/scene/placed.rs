@@ -141,7 +141,7 @@ mod tests {
     use glam::DQuat;
 
     use super::*;
-    use crate::scene::{Kind, generate};
+    use crate::{Kind, generate};
 
     /// The colour of a Gaussian in a direction.
     fn seen(gaussians: &Gaussians, index: usize, direction: DVec3) -> DVec3 {

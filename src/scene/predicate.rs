@@ -2,15 +2,16 @@
 
 use super::{Gaussians, Part, Property, SH_0};
 use crate::clip::Expression;
-use crate::counted::counted;
-use crate::error::{Error, Result, shortened};
 use crate::placement::Placement;
+use rara_base::counted::counted;
+use rara_base::error::{Error, Result, shortened};
 
 /// What a Gaussian has to be for a selection to take it: a tree of comparisons and regions. It parses from text:
 /// `opacity>0.5`, `size<=0.01`, `label in 3,4` or `label in 1..7`, and `inside(sphere:0,0,0,1)`, joined by `and`, `or`, `not`
 /// and `( )`, where `not` goes before `and` and that before `or`.
 ///
 /// ```
+/// # use rara_scene as rara;
 /// use rara::scene::{self, Predicate};
 ///
 /// let scene = scene::generate(scene::Kind::General, 1000, 1);

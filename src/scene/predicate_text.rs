@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use super::predicate::{Attribute, Comparison, Predicate};
 use crate::clip::{Expression, Parser};
-use crate::error::{Error, Result, shortened};
+use rara_base::error::{Error, Result, shortened};
 
 /// How deep parentheses may be nested.
 const DEPTH: usize = 48;

@@ -7,8 +7,8 @@ use std::path::Path;
 #[cfg(feature = "formats")]
 use super::formats::WRITERS;
 use super::{Format, Gaussians};
-use crate::error::{Error, Result};
-use crate::files::write_atomically;
+use rara_base::error::{Error, Result};
+use rara_base::files::write_atomically;
 
 /// The number written as the logarithm of a scale of exactly zero: exp(-104) is below the smallest single-precision
 /// number, so that loading gives zero again, and other readers see a finite number.
@@ -37,7 +37,7 @@ pub fn save_ply(path: &Path, gaussians: &Gaussians) -> Result<()> {
 /// also `.compressed.ply`, `.spz`, `.sog` and `.glb`. The file appears when complete.
 ///
 /// All but `.glb` round what they store, `.ply` in the last digits of scales and opacities, and `.compressed.ply` and `.sog`
-/// change the Gaussians' order; the guide's chapter on [formats](crate::guide::formats) has what that costs.
+/// change the Gaussians' order; the guide's chapter on formats has what that costs.
 ///
 /// Returns how many Gaussians have a scale, a colour or a coefficient beyond what the format holds; it becomes the nearest
 /// that it does.

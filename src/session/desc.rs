@@ -1,8 +1,8 @@
 //! The description from which a session is opened.
 
-use crate::gpu::{Bindings, Device, DeviceShape, OnCompile, PipelineCache};
-use crate::setters::setters;
 use crate::trace::Trace;
+use rara_base::setters;
+use rara_gpu::{Bindings, Device, DeviceShape, OnCompile, PipelineCache};
 
 /// The description from which a headless renderer is created.
 #[derive(Debug, Clone, Default)]

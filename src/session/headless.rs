@@ -1,21 +1,20 @@
 //! Turns scenes into pictures without a window.
 
 use super::stored::{SpareMemory, Stored, StoredPicture};
-use super::target::{Target, blendable_on};
+use super::target::{Target, blendable_on, vulkan_format};
 use super::{HeadlessDesc, Session};
-use crate::camera::Camera;
-use crate::clip::Clip;
-use crate::error::{Error, Result};
-use crate::gpu::{Device, DeviceDesc, PipelineFile};
 use crate::passes::{SceneBuffers, SceneLayer};
-use crate::picture::Picture;
-use crate::precision::{ShFormat, TargetFormat};
 use crate::renderer::{Renderer, RendererDesc};
-use crate::scene::{LayerState, Scene};
-use crate::settings::Settings;
 use crate::stats::FrameStats;
 use crate::trace;
-pub use aov::Aov;
+use rara_base::error::{Error, Result};
+use rara_gpu::{Device, DeviceDesc, PipelineFile};
+use rara_scene::camera::Camera;
+use rara_scene::clip::Clip;
+use rara_scene::picture::Picture;
+use rara_scene::precision::{ShFormat, TargetFormat};
+use rara_scene::settings::Settings;
+use rara_scene::{LayerState, Scene};
 
 /// A renderer that owns its device and draws into an offscreen picture, of 32-bit floats unless the settings say
 /// otherwise.
@@ -34,13 +33,12 @@ impl Headless {
     pub fn new(desc: &HeadlessDesc) -> Result<Self> {
         let selector = desc.device.clone();
         let open = || {
-            Device::headless(&DeviceDesc {
-                selector,
-                validation: desc.validation,
-                statistics: desc.statistics,
-                application_name: "rara".into(),
-                shape: desc.shape,
-            })
+            let device = DeviceDesc::default()
+                .selector(selector)
+                .validation(desc.validation)
+                .statistics(desc.statistics)
+                .shape(desc.shape);
+            Device::headless(&device)
         };
         Self::on(trace::span(desc.trace.as_ref(), "open", open)?, desc)
     }
@@ -58,7 +56,7 @@ impl Headless {
             target: Target::of_tiles(),
             kept_pipeline_bytes: 0,
             spare_memory: SpareMemory::default(),
-            session: Session::beside(renderer, format.vulkan())?,
+            session: Session::beside(renderer, vulkan_format(format))?,
         })
     }
 
@@ -67,7 +65,7 @@ impl Headless {
         let format = blendable_on(&device, TargetFormat::default())?;
         let renderer = RendererDesc {
             statistics: desc.statistics,
-            ..RendererDesc::new(format.vulkan())
+            ..RendererDesc::new(vulkan_format(format))
         };
         let session = Session::new(device, desc, renderer)?;
         let held_bytes = session.pipelines.as_ref().map(PipelineFile::held_bytes);
@@ -205,7 +203,6 @@ impl Headless {
 mod aov;
 mod depth;
 mod pick;
-#[cfg(feature = "lab")]
 mod working;
 
 #[cfg(test)]

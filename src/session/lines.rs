@@ -2,8 +2,8 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::camera::{Camera, Projection};
 use crate::passes::PictureLine;
+use rara_scene::camera::{Camera, Projection};
 
 /// A line in the world, which [`Windowed`](super::Windowed) draws over its picture. Nothing hides it.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -5,17 +5,17 @@ use std::time::Instant;
 
 use ash::vk;
 
-use crate::camera::Camera;
-use crate::clip::Clip;
-use crate::error::{Error, Result};
-use crate::gpu::{Device, Drawer, PipelineFile};
 use crate::passes::{SceneBuffers, SceneLayer};
-use crate::precision::ShFormat;
 use crate::renderer::{ConfiguredFrame, FrameRequest, Outcome, Renderer, RendererDesc, Submission};
-use crate::scene::Scene;
-use crate::settings::Settings;
 use crate::stats::FrameStats;
 use crate::trace::{self, Trace};
+use rara_base::error::{Error, Result};
+use rara_gpu::{Device, Drawer, PipelineFile};
+use rara_scene::Scene;
+use rara_scene::camera::Camera;
+use rara_scene::clip::Clip;
+use rara_scene::precision::ShFormat;
+use rara_scene::settings::Settings;
 
 mod desc;
 mod headless;
@@ -30,7 +30,7 @@ mod target;
 mod windowed;
 
 pub use desc::HeadlessDesc;
-pub use headless::{Aov, Headless};
+pub use headless::Headless;
 #[cfg(feature = "view")]
 pub use lines::Line;
 #[cfg(feature = "view")]
@@ -39,7 +39,7 @@ pub use stored::StoredPicture;
 #[cfg(feature = "view")]
 pub use windowed::{Redraw, Windowed};
 
-use target::Target;
+use target::{Target, vulkan_format};
 
 #[cfg(test)]
 mod tests;
@@ -132,7 +132,7 @@ impl Session {
         let renderer = &mut self.renderer;
         let scene = loaded(&self.scene, "render")?;
         let format = target.set_format(&self.device, settings.precision.target)?;
-        renderer.set_color_format(format.vulkan());
+        renderer.set_color_format(vulkan_format(format));
         let request = FrameRequest {
             scene,
             camera,

@@ -2,9 +2,9 @@
 
 use ash::vk;
 
-use crate::error::Result;
-use crate::gpu::{Buffer, BufferDesc, Device, FRAMES, Location};
-use crate::picture::Picture;
+use rara_base::error::Result;
+use rara_gpu::{Buffer, BufferDesc, Device, FRAMES, Location};
+use rara_scene::picture::Picture;
 
 /// A picture that [`Windowed`](super::Windowed) shows over its own, as for text. It is opaque: its alpha does not count.
 #[derive(Debug, Clone, PartialEq)]

@@ -2,9 +2,9 @@
 
 use std::time::Instant;
 
-use crate::gpu::{Device, PassSpan};
 use crate::renderer::RecordedFrame;
 use crate::trace::{Note, Trace};
+use rara_gpu::{Device, PassSpan};
 
 /// Adds the stages of the frame that has just been waited for. Where the device's clock cannot be read, the first stage
 /// begins with the submission, and the trace says so.

@@ -5,8 +5,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 use ash::vk;
 
 use crate::passes::TilePicture;
-use crate::picture::Picture;
-use crate::precision::TargetFormat;
+use rara_scene::picture::Picture;
+use rara_scene::precision::TargetFormat;
 
 /// The bytes of a picture as the device stores them.
 #[derive(Debug, Clone, Copy)]

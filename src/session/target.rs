@@ -5,11 +5,11 @@ use std::borrow::Cow;
 use ash::vk;
 
 use super::stored::Stored;
-use crate::camera::Camera;
-use crate::error::{Error, Result};
-use crate::gpu::{Buffer, BufferDesc, Device, Image, ImageDesc, Location};
 use crate::passes::TilePicture;
-use crate::precision::TargetFormat;
+use rara_base::error::{Error, Result};
+use rara_gpu::{Buffer, BufferDesc, Device, Image, ImageDesc, Location};
+use rara_scene::camera::Camera;
+use rara_scene::precision::TargetFormat;
 
 /// A picture for frames, replaced where a frame needs another size or format: an image that is drawn into or, without one,
 /// what the renderer's tiles have made.
@@ -81,7 +81,7 @@ impl Target {
             name: "target",
             width: extent.width,
             height: extent.height,
-            format: self.format.vulkan(),
+            format: vulkan_format(self.format),
         })?);
         Ok(())
     }
@@ -124,7 +124,7 @@ impl Target {
 
     /// Reads the picture back.
     #[cfg(any(feature = "view", test))]
-    pub(super) fn read_back(&mut self, device: &Device) -> Result<crate::picture::Picture> {
+    pub(super) fn read_back(&mut self, device: &Device) -> Result<rara_scene::picture::Picture> {
         self.stored(device, |stored| stored.decode())
     }
 
@@ -199,12 +199,21 @@ fn bits(background: Option<[f32; 3]>) -> Option<[u32; 3]> {
     background.map(|rgb| rgb.map(f32::to_bits))
 }
 
+/// The Vulkan format of a picture's format.
+pub(super) const fn vulkan_format(format: TargetFormat) -> vk::Format {
+    match format {
+        TargetFormat::Unorm8 => vk::Format::R8G8B8A8_UNORM,
+        TargetFormat::Half => vk::Format::R16G16B16A16_SFLOAT,
+        TargetFormat::Float => vk::Format::R32G32B32A32_SFLOAT,
+    }
+}
+
 /// The format that takes a wanted one's place on a device: itself, or 16-bit floats, into which every device blends, where the
 /// device cannot blend into 32-bit ones. Where it can they stay: GPUs may write them at half the rate, but dozens of blends into
 /// 16-bit ones are off by 0.6 to 5 of 255 (the guide's chapter on testing), which is more than all else in a picture.
 pub(super) fn blendable_on(device: &Device, wanted: TargetFormat) -> Result<TargetFormat> {
     let blends = |format: TargetFormat| {
-        let features = device.format_features(format.vulkan());
+        let features = device.format_features(vulkan_format(format));
         features.contains(vk::FormatFeatureFlags::COLOR_ATTACHMENT_BLEND)
     };
     blendable(wanted, blends).ok_or_else(|| {

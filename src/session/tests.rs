@@ -1,12 +1,13 @@
 //! Tests of the loop itself, without a window and with several frames in flight.
 
+use super::target::vulkan_format;
 use super::*;
-use crate::gpu::{PipelineCache, testing};
-use crate::precision::TargetFormat;
 use crate::renderer::RecordedFrame;
-use crate::scene::{Bounds, Gaussians, Kind, generate};
-use crate::settings::Raster;
 use glam::{DVec3, Vec3};
+use rara_gpu::{PipelineCache, testing};
+use rara_scene::precision::TargetFormat;
+use rara_scene::settings::Raster;
+use rara_scene::{Bounds, Gaussians, Kind, generate};
 
 /// A session as a window has it, with frames in flight.
 fn session() -> Session {
@@ -17,7 +18,7 @@ fn session() -> Session {
     };
     let renderer = RendererDesc {
         frames_in_flight: 2,
-        ..RendererDesc::new(TargetFormat::default().vulkan())
+        ..RendererDesc::new(vulkan_format(TargetFormat::default()))
     };
     Session::new(testing::device(), &desc, renderer).expect("a renderer")
 }
@@ -70,10 +71,7 @@ fn show(session: &mut Session, camera: &Camera, settings: &Settings) -> Outcome 
 #[test]
 fn a_picture_after_frames_in_flight_has_the_room_it_needs() {
     let (scene, camera) = crowded();
-    let settings = Settings {
-        raster: Raster::Tiles,
-        ..Settings::default()
-    };
+    let settings = Settings::default().raster(Raster::Tiles);
     let mut pictures = Vec::new();
     for frames_before in 0..3 {
         let mut session = session();

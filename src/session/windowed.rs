@@ -9,19 +9,19 @@ use super::lines::Line;
 use super::panels::{self, Panel, Panels};
 use super::target::Target;
 use super::{HeadlessDesc, Session, loaded};
-use crate::camera::Camera;
-use crate::clip::Clip;
-use crate::error::{Error, Result};
-use crate::gpu::{
+use crate::passes::{Lines, SceneLayer};
+use crate::renderer::{FrameRequest, Outcome, RendererDesc};
+use crate::stats::FrameStats;
+use rara_base::error::{Error, Result};
+use rara_gpu::{
     Attachments, Device, DeviceDesc, Drawer, FRAMES, InFlight, Surface, Swapchain, Window,
 };
-use crate::passes::{Lines, SceneLayer};
-use crate::picture::Picture;
-use crate::precision::ShFormat;
-use crate::renderer::{FrameRequest, Outcome, RendererDesc};
-use crate::scene::{LayerState, Scene};
-use crate::settings::Settings;
-use crate::stats::FrameStats;
+use rara_scene::camera::Camera;
+use rara_scene::clip::Clip;
+use rara_scene::picture::Picture;
+use rara_scene::precision::ShFormat;
+use rara_scene::settings::Settings;
+use rara_scene::{LayerState, Scene};
 
 /// A renderer that owns its device and draws into a host's window, with two frames in flight. Colours are blended as they
 /// are stored, on black where the settings name no background.
@@ -62,13 +62,10 @@ impl Windowed {
     where
         W: HasWindowHandle + HasDisplayHandle + 'static,
     {
-        let open = DeviceDesc {
-            selector: desc.device.clone(),
-            validation: desc.validation,
-            application_name: "rara".into(),
-            statistics: false,
-            shape: desc.shape,
-        };
+        let open = DeviceDesc::default()
+            .selector(desc.device.clone())
+            .validation(desc.validation)
+            .shape(desc.shape);
         let window: Arc<dyn Window> = window;
         let (device, surface) = Surface::open(&open, window)?;
         let swapchain = Swapchain::new(&device, surface)?;

@@ -40,18 +40,15 @@ impl Trace {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::stats::PassStatistics;
     use crate::trace::Note;
+    use rara_base::stats::PassStatistics;
 
     #[test]
     fn what_holds_others_comes_first() {
         let trace = Trace::new();
         trace.span("outer", || trace.span("inner", || ()));
-        let about = PassStatistics {
-            name: "sort",
-            primitives: 7,
-            ..PassStatistics::default()
-        };
+        let mut about = PassStatistics::new("sort");
+        about.primitives = 7;
         trace.gpu("sort", [3.0, 5.0], Some(about));
         trace.note("clock", Note::Text("read".into()));
         trace.note("clock", Note::Text("none".into()));

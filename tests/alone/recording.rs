@@ -5,9 +5,9 @@ use std::cell::Cell;
 
 use crate::common;
 use rara::ash::vk;
-use rara::gpu::{Drawer, ImageDesc};
 use rara::scene::{Kind, generate};
 use rara::{ClipOp, Renderer, RendererDesc, SceneBuffers, Settings, ShFormat};
+use rara_gpu::{Drawer, ImageDesc};
 
 /// The system's allocator, which counts what this thread asks of it.
 struct Counting;

@@ -1,4 +1,4 @@
-//! The names that users of the library can use, read from its source and compared with `tests/api.txt`, so that no
+//! The names that users of the library can use, read from its source and that of the crates below it, and compared with `tests/api.txt`, so that no
 //! change goes unseen.
 //!
 //! After an intended change, `RARA_RENEW_API=1 cargo test --test api` writes the list anew; the change's description
@@ -20,9 +20,12 @@ use lines::{derived, fields, implemented, leaves, segments, setters, tidy};
 fn the_public_interface_is_what_is_written_down() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut library = Library::default();
-    let text = fs::read_to_string(root.join("src/lib.rs")).expect("the library");
-    let file = syn::parse_file(&text).expect("Rust");
-    library.read("rara", file.items, &root.join("src"));
+    for (name, folder) in CRATES {
+        let folder = root.join(folder);
+        let text = fs::read_to_string(folder.join("lib.rs")).expect("the library");
+        let file = syn::parse_file(&text).expect("Rust");
+        library.read(name, file.items, &folder);
+    }
     library.find_impls();
     let found = library.public();
 
@@ -45,6 +48,14 @@ fn the_public_interface_is_what_is_written_down() {
         new.join("\n"),
     );
 }
+
+/// The library and the crates whose items it shows.
+const CRATES: [(&str, &str); 4] = [
+    ("rara", "src"),
+    ("rara_base", "src/base"),
+    ("rara_gpu", "src/gpu"),
+    ("rara_scene", "src/scene"),
+];
 
 /// A definition: the module that it is in, and its name there.
 type Place = (String, String);
@@ -97,7 +108,8 @@ impl Library {
         let (first, rest) = path.split_first()?;
         let inner = |name: &str| format!("{module}::{name}");
         let within = match first.as_str() {
-            "crate" => "rara".to_owned(),
+            "crate" => module.split("::").next()?.to_owned(),
+            name if !rest.is_empty() && self.modules.contains_key(name) => name.to_owned(),
             "self" => module.to_owned(),
             "super" => module.rsplit_once("::")?.0.to_owned(),
             name if rest.is_empty() => {
@@ -109,7 +121,10 @@ impl Library {
                     return Some((module.to_owned(), name.to_owned()));
                 }
                 let key = (module.to_owned(), name.to_owned());
-                let import = self.imports.get(&key)?;
+                let Some(import) = self.imports.get(&key) else {
+                    let inner = Some(inner(name)).filter(|inner| self.modules.contains_key(inner));
+                    return inner.map(|inner| (inner, String::new()));
+                };
                 return (import.as_slice() != path).then(|| self.place(module, import))?;
             }
             name if self.modules.contains_key(&inner(name)) => inner(name),
@@ -187,7 +202,11 @@ impl Library {
                 Item::Use(import) => {
                     for (name, from) in leaves(&import.tree) {
                         assert_ne!(name, "*", "{module} shows everything of {from:?}");
-                        to.insert(format!("{path}::{name}"), self.place(module, &from));
+                        let shown = format!("{path}::{name}");
+                        match self.place(module, &from) {
+                            Some((inner, item)) if item.is_empty() => self.list(&shown, &inner, to),
+                            place => drop(to.insert(shown, place)),
+                        }
                     }
                 }
                 _ => {

@@ -14,7 +14,7 @@ use rara::scene::{Bounds, Kind, generate, load};
 use rara::types::Splat;
 use rara::{
     Camera, Clip, ClipOp, FrameStats, Gaussians, Headless, HeadlessDesc, Picture, PipelineCache,
-    Plane, Projection, Raster, Settings, reference,
+    Plane, Projection, Raster, Settings,
 };
 use rara_lab::measure::differences;
 
@@ -316,10 +316,10 @@ pub fn truth(
     camera: &Camera,
     clip: &Clip,
     settings: &Settings,
-) -> Arc<reference::ReferenceFrame> {
+) -> Arc<rara_reference::ReferenceFrame> {
     /// A frame takes .3 to 1 MB.
     const KEPT: usize = 40;
-    static LAST: Mutex<VecDeque<(String, Arc<reference::ReferenceFrame>)>> =
+    static LAST: Mutex<VecDeque<(String, Arc<rara_reference::ReferenceFrame>)>> =
         Mutex::new(VecDeque::new());
     let usual = Settings::default();
     let mut settings = settings.raster(usual.raster);
@@ -340,7 +340,7 @@ pub fn truth(
     if let Some((_, frame)) = last.iter().find(|(known, _)| *known == key) {
         return frame.clone();
     }
-    let frame = reference::render::<f64>(scene, camera, clip, &settings);
+    let frame = rara_reference::render::<f64>(scene, camera, clip, &settings);
     let frame = Arc::new(frame);
     last.truncate(KEPT - 1);
     last.push_front((key, frame.clone()));

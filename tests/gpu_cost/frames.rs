@@ -2,12 +2,12 @@
 
 use rara::ash::vk;
 use rara::glam::{DQuat, DVec3};
-use rara::gpu::{Bindings, Device, DeviceDesc, DeviceShape, Drawer, Image, Recorded};
 use rara::scene::{Bounds, Kind, generate};
 use rara::{
     Camera, Clip, ClipOp, DepthDesc, DepthMap, Error, ExpectedDepthDesc, Gaussians, Layer, Mode,
     Preset, Raster, Renderer, RendererDesc, Scene, SceneBuffers, Settings, ShFormat, Shape,
 };
+use rara_gpu::{Bindings, Device, DeviceDesc, DeviceShape, Drawer, Image, Recorded};
 
 use crate::common;
 

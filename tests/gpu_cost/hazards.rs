@@ -1,6 +1,6 @@
 //! Every kind of frame is recorded under synchronisation checks.
 
-use rara::gpu::{Bindings, Device, DeviceDesc, DeviceShape, ImageDesc};
+use rara_gpu::{Bindings, Device, DeviceDesc, DeviceShape, ImageDesc};
 
 use crate::frames::{FORMAT, Frames, SMALL};
 

@@ -8,9 +8,8 @@ use std::{env, fs};
 use rara::ash::vk;
 use rara::gpu::{Device, DeviceDesc, DeviceShape};
 use rara::types::{FrameData, Splat};
-use rara::{
-    Gaussians, Mode, Raster, Renderer, RendererDesc, SceneBuffers, Settings, ShFormat, limits,
-};
+use rara::{Gaussians, Mode, Raster, Renderer, RendererDesc, SceneBuffers, Settings, ShFormat};
+use rara_base::limits;
 use rara_lab::measure::gpu_model::{
     self, COSTS, FRAMES_FILE, FrameNumbers, KERNELS_FILE, Kernel, ModelFrame, frames, kernels,
 };

@@ -3,9 +3,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use rara::gpu::{Dispatched, DispatchedGroups};
+use rara::Raster;
 use rara::types::{FrameCounts, FrameData};
-use rara::{Raster, limits};
+use rara_base::limits;
+use rara_gpu::{Dispatched, DispatchedGroups};
 use rara_lab::measure::gpu_model::{COSTS, FrameNumbers};
 
 use crate::budget::{self, Rule, Table};

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::{env, fs};
 
-use rara::gpu::{CompiledShader, DeviceDesc, DeviceShape};
+use rara_gpu::{CompiledShader, DeviceDesc, DeviceShape};
 
 use crate::budget::{self, Numbers, Rule, Table};
 use crate::common::folder::Folder;

@@ -5,12 +5,12 @@ use crate::canvas::adopt;
 use crate::common;
 use crate::host::{FRAMES, Host, HostDesc};
 use rara::ash::vk;
-use rara::gpu::{Bindings, Buffer, BufferDesc, Device, Location};
 use rara::scene::{Kind, generate};
 use rara::{
     Clip, ClipOp, ConfiguredFrame, Gaussians, Picture, Raster, Renderer, RendererDesc,
     SceneBuffers, Settings, ShFormat, Staging,
 };
+use rara_gpu::{Bindings, Buffer, BufferDesc, Device, Location};
 
 const FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 const VIEW: vk::Extent2D = vk::Extent2D {

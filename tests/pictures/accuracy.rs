@@ -3,9 +3,7 @@
 use crate::common;
 use glam::DVec3;
 use rara::scene::Bounds;
-use rara::{
-    Camera, Clip, ClipOp, Decay, ExactForm, Gaussians, Miss, Mode, Plane, Settings, reference,
-};
+use rara::{Camera, Clip, ClipOp, Decay, ExactForm, Gaussians, Miss, Mode, Plane, Settings};
 use rara_lab::measure::{Comparison, compare};
 
 /// Mean absolute difference of the channels, of 255.
@@ -39,7 +37,7 @@ fn exact_is_ten_times_nearer_to_the_truth_than_any_other_way() {
             .form(ExactForm::Beam)
             .decay(Some(Decay::Depth))
             .trace_all(true);
-        let truth = reference::render::<f64>(&scene, &camera, &clip, &truth).picture;
+        let truth = rara_reference::render::<f64>(&scene, &camera, &clip, &truth).picture;
         headless.load(&scene).expect("uploads");
         let mut error = |settings: Settings| -> Comparison {
             headless.render(&camera, &clip, &settings).expect("renders");

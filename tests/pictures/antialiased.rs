@@ -5,7 +5,7 @@ use rara::clip::Expression;
 use rara::scene::{self, Kind};
 use rara::{
     Camera, Clip, ClipOp, Gaussians, Headless, Layer, LayerState, Mode, Picture, Raster, Scene,
-    Settings, reference,
+    Settings,
 };
 
 const SIZE: (u32, u32) = (64, 48);
@@ -117,7 +117,7 @@ fn layers_are_antialiased_one_by_one() {
         let settings = Settings::default().raster(raster);
         headless.load(mixed(true)).expect("uploads");
         let picture = drawn(&mut headless, &camera, &clip, &settings);
-        let truth = reference::render::<f64>(mixed(true), &camera, &clip, &settings);
+        let truth = rara_reference::render::<f64>(mixed(true), &camera, &clip, &settings);
         common::assert_agrees("mixed layers", &picture, &truth.picture);
         // The layer that is not antialiased is drawn to the bit as it is in a scene without any that is.
         headless.load(mixed(false)).expect("uploads");

@@ -3,10 +3,7 @@
 use crate::common;
 use glam::{DQuat, DVec3, Vec3};
 use rara::scene::{Kind, generate};
-use rara::{
-    Aov, Camera, Clip, ClipOp, Gaussians, Mode, Projection, Raster, Scene, Settings, Show,
-    reference,
-};
+use rara::{Aov, Camera, Clip, ClipOp, Gaussians, Mode, Projection, Raster, Scene, Settings, Show};
 
 #[test]
 fn headless_expected_depths_are_the_references() {
@@ -21,7 +18,7 @@ fn headless_expected_depths_are_the_references() {
         let before = headless.picture().expect("reads back");
         let depths = headless.expected_depth(&camera, &clip, &settings);
         let depths = depths.expect("draws depths");
-        let truth = reference::depth::expected::<f64>(&scene, &camera, &clip, &settings);
+        let truth = rara_reference::depth::expected::<f64>(&scene, &camera, &clip, &settings);
         assert_eq!(depths.len(), truth.len());
         let mut errors: Vec<f64> = depths
             .iter()

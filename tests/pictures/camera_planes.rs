@@ -6,7 +6,7 @@ use rara::clip::Expression;
 use rara::scene::{Kind, generate};
 use rara::{
     Camera, Clip, ClipOp, Gaussians, Layer, LayerState, Mode, Picture, Placement, Plane, Scene,
-    Settings, reference,
+    Settings,
 };
 
 fn views() -> [Camera; 2] {
@@ -154,7 +154,7 @@ fn a_near_cut_leaves_out_whole_splats() {
         let half = Placement::new(DVec3::ZERO, DQuat::IDENTITY, 0.5).expect("a placement");
         let half = Layer::new("half", &scene).with(LayerState::default().placement(half));
         let (placed, cut) = (Scene::from_iter([half]), camera.near_cut(Some(2.9)));
-        let truth = reference::render::<f64>(placed.clone(), &cut, &clip, &settings);
+        let truth = rara_reference::render::<f64>(placed.clone(), &cut, &clip, &settings);
         headless.load(placed).expect("uploads");
         let stats = headless.render(&cut, &clip, &settings).expect("renders");
         assert!((100..1400).contains(&stats.counts.culled), "{stats:?}");

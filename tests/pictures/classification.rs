@@ -3,9 +3,9 @@
 use crate::common;
 use glam::{DQuat, DVec3, Quat, Vec3};
 use proptest::prelude::*;
-use rara::reference::{self, Footprint, Side, ViewTransform, classify, cutoff, splat};
 use rara::scene::{Kind, generate};
 use rara::{Camera, Clip, ClipOp, Decay, ExactForm, Gaussians, Mode, Plane, Settings};
+use rara_reference::{Footprint, Side, ViewTransform, classify, cutoff, splat};
 
 /// The most that a pixel may change when a splat outside the band is treated as cut: half of an 8-bit level.
 const HALF_LEVEL: f64 = 0.5 / 255.0;
@@ -93,7 +93,7 @@ proptest! {
 
         let traced = settings
 .trace_all(true);
-        let mut drawn = reference::project::project(&scene, 0, &view, &settings).expect("it is in view");
+        let mut drawn = rara_reference::project::project(&scene, 0, &view, &settings).expect("it is in view");
         for (x, y) in aim {
             let (dx, dy) = (x * footprint.half_sides[0], y * footprint.half_sides[1]);
             drawn.cut = None;

@@ -3,7 +3,6 @@
 
 use crate::common;
 use glam::{DQuat, DVec3, Quat};
-use rara::reference;
 use rara::{Camera, Clip, ClipOp, ExactForm, Gaussians, Mode, Plane, Raster, Settings};
 
 /// How much a pixel may be off: the fit's tolerance, Phi's error, and what the rounding of a pixel's place to single
@@ -90,7 +89,7 @@ fn fitted_weights_are_the_exact_ones() {
         let stats = headless.render(&camera, &clip, &settings).expect("renders");
         cut += stats.counts.cutoff;
         let truth = settings.form(ExactForm::Beam).trace_all(true);
-        let truth = reference::render::<f64>(&scene, &camera, &clip, &truth).picture;
+        let truth = rara_reference::render::<f64>(&scene, &camera, &clip, &truth).picture;
         let picture = headless.picture().expect("reads back");
         // Alpha alone is compared, since no colour scales it. On the splat's contour rounding decides whether a pixel has
         // any.

@@ -2,7 +2,7 @@
 
 use crate::common;
 use rara::scene::{Kind, generate};
-use rara::{ClipOp, Mode, Raster, Settings, Show, reference};
+use rara::{ClipOp, Mode, Raster, Settings, Show};
 
 #[test]
 fn classes_and_weights_are_shown_as_the_reference_does() {
@@ -42,7 +42,7 @@ fn colours_and_weights_take_turns() {
         let settings = Settings::default().show(show);
         headless.render(&camera, &clip, &settings).expect("renders");
         let picture = headless.picture().expect("reads back");
-        let truth = reference::render::<f64>(&scene, &camera, &clip, &settings).picture;
+        let truth = rara_reference::render::<f64>(&scene, &camera, &clip, &settings).picture;
         common::assert_agrees(&format!("{show:?}"), &picture, &truth);
     }
 }

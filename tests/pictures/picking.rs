@@ -5,7 +5,7 @@ use rara::glam::{DQuat, DVec3};
 use rara::scene::{Bounds, Kind, generate};
 use rara::{
     Camera, Clip, ClipOp, Gaussians, Headless, Layer, LayerState, Mode, Pick, PickTicket, Picker,
-    Picks, Picture, Placement, Renderer, RendererDesc, Scene, Settings, Show, reference,
+    Picks, Picture, Placement, Renderer, RendererDesc, Scene, Settings, Show,
 };
 
 use crate::common;
@@ -81,7 +81,7 @@ fn pixels_show_most_of_what_the_reference_says() {
         let clip = common::clip(&scene, planes, ClipOp::And);
         let settings = Settings::default().mode(mode);
         let strongest = settings.show(Show::Strongest);
-        let truth = reference::render::<f64>(&scene, &camera, &clip, &strongest).picture;
+        let truth = rara_reference::render::<f64>(&scene, &camera, &clip, &strongest).picture;
         let whole = headless
             .pick(&camera, &clip, &settings, rect(0, 0, size.0, size.1))
             .expect("picks");
@@ -149,7 +149,7 @@ fn layers_are_picked_where_they_are_shown() {
             first = first.clipped(own);
         }
         let scene = Scene::from_iter([first, layers[1].clone()]);
-        let truth = reference::render::<f64>(scene, &camera, &Clip::default(), &strongest);
+        let truth = rara_reference::render::<f64>(scene, &camera, &Clip::default(), &strongest);
         let picks = headless.pick(&camera, &Clip::default(), &settings, everywhere);
         let picks = picks.expect("picks");
         assert!(differing(&picks, &truth.picture) < 16);

@@ -7,10 +7,10 @@ use std::thread;
 use crate::common;
 use glam::{DQuat, DVec2, DVec3, Quat, Vec3};
 use rara::clip::Expression;
-use rara::reference::cutoff::cutoff;
-use rara::reference::quadrature::PixelRays;
-use rara::reference::{Footprint, SplatCut, ViewTransform};
-use rara::{Camera, Clip, Decay, Gaussians, Headless, Mode, Raster, Settings, reference};
+use rara::{Camera, Clip, Decay, Gaussians, Headless, Mode, Raster, Settings};
+use rara_reference::cutoff::cutoff;
+use rara_reference::quadrature::PixelRays;
+use rara_reference::{Footprint, SplatCut, ViewTransform};
 
 /// Random cases of each class of size, and the classes: standard deviations in pixels.
 const CASES: usize = 64;
@@ -248,7 +248,8 @@ impl Errors {
 /// Draws a case and compares pixels that it covers.
 fn study(headless: &mut Headless, dice: &mut Dice, case: &Case, errors: &mut Errors) {
     let whole = Settings::default().mode(Mode::None);
-    let whole = reference::render::<f64>(&case.gaussians, &case.camera, &Clip::default(), &whole);
+    let whole =
+        rara_reference::render::<f64>(&case.gaussians, &case.camera, &Clip::default(), &whole);
     let alpha = |pixel: usize| f64::from(whole.picture.pixels[pixel][3]);
     let mut covered: Vec<usize> = (0..whole.picture.pixels.len())
         .filter(|&pixel| alpha(pixel) > 1.01 / 255.0)

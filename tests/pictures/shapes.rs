@@ -207,6 +207,6 @@ fn layers_with_curved_clips_and_with_many_planes_stand_side_by_side() {
         .render(&camera, &Clip::default(), &settings)
         .expect("renders");
     let picture = headless.picture().expect("reads back");
-    let truth = rara::reference::render::<f64>(&layers, &camera, &Clip::default(), &settings);
+    let truth = rara_reference::render::<f64>(&layers, &camera, &Clip::default(), &settings);
     common::assert_agrees("thirty planes beside a sphere", &picture, &truth.picture);
 }

@@ -7,7 +7,7 @@ use rara::clip::Expression;
 use rara::scene::{Bounds, Kind, cross_section, generate};
 use rara::{
     Aov, Camera, Clip, ClipOp, Gaussians, Layer, LayerState, Mode, Placement, Plane, Raster, Scene,
-    Settings, Show, reference,
+    Settings, Show,
 };
 
 #[test]
@@ -24,7 +24,7 @@ fn counts_and_means_are_the_references() {
             let count = settings.show(Show::Count);
             headless.render(&camera, &clip, &count).expect("renders");
             let ours = headless.picture().expect("reads back");
-            let truth = reference::render::<f64>(&scene, &camera, &clip, &count).picture;
+            let truth = rara_reference::render::<f64>(&scene, &camera, &clip, &count).picture;
             let pairs = ours.pixels.iter().zip(&truth.pixels);
             // A splat may be at its threshold of alpha, or a pixel at that of saturation.
             let apart = pairs

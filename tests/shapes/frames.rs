@@ -1,9 +1,9 @@
 //! The same frame by several kinds of kernels, and all that they leave of it.
 
 use rara::gpu::{Bindings, DeviceShape};
-use rara::limits::SORT_BITS;
 use rara::types::{FrameCounts, FrameData};
 use rara::{Camera, Clip, Headless, Picture, Raster, Scene, Settings};
+use rara_base::limits::SORT_BITS;
 
 use crate::common;
 

@@ -1,11 +1,11 @@
 //! Stage `bin`: which tiles a splat reaches, and the splats of each tile, front to back.
 
 use glam::{DMat4, Quat, Vec3};
-use rara::limits::{TILE_HEIGHT, TILE_WIDTH};
-use rara::reference::bin::{self, Outline, Span};
-use rara::reference::{Real, ViewTransform, project, sort};
 use rara::types::{Quad, Splat};
 use rara::{Camera, Clip, ClipOp, ExactForm, Mode, Raster, Settings};
+use rara_base::limits::{TILE_HEIGHT, TILE_WIDTH};
+use rara_reference::bin::{self, Outline, Span};
+use rara_reference::{Real, ViewTransform, project, sort};
 
 use crate::frame::{self, SIZE, Stages};
 use crate::sort::places;

@@ -1,9 +1,9 @@
 //! Stages `blocks` and `classify`: which Gaussians are in view, and what the clip does to them.
 
 use glam::{DMat4, Quat, Vec3};
-use rara::limits::BLOCK_SIZE;
-use rara::reference::{self, Side, ViewTransform, classify};
 use rara::{Camera, Clip, ClipOp, Mode, Raster, Settings};
+use rara_base::limits::BLOCK_SIZE;
+use rara_reference::{Side, ViewTransform, classify};
 
 use crate::frame::{self, Stages};
 use crate::ties;
@@ -109,7 +109,7 @@ fn check(stages: &mut Stages, camera: &Camera, planes: &Clip, settings: &Setting
     let mut apart = 0;
     for (block, twin) in twin.chunks(BLOCK_SIZE as usize).enumerate() {
         if of_blocks[block] == 3 {
-            let counts = reference::counts(twin);
+            let counts = rara_reference::counts(twin);
             let [visible, cutoff, invisible, _] = totals[block];
             apart += visible.abs_diff(counts.visible)
                 + cutoff.abs_diff(counts.cutoff)

@@ -2,11 +2,11 @@
 
 use glam::{DVec3, Quat, Vec3};
 use rara::clip::Expression;
-use rara::limits::{self, ALPHA_MIN, BLOCK_SIZE};
-use rara::reference::region::{Bounds, box_side};
-use rara::reference::{Side, clip};
 use rara::types::Block;
 use rara::{Clip, ClipOp, Mode, Plane, Raster, Settings};
+use rara_base::limits::{self, ALPHA_MIN, BLOCK_SIZE};
+use rara_reference::region::{Bounds, box_side};
+use rara_reference::{Side, clip};
 
 use crate::frame::{self, Stages};
 use crate::ties;

@@ -1,9 +1,9 @@
 //! Stage `compact`: the survivors' lists, from the classes that the stages before have found.
 
-use rara::limits::SURVIVOR_GROUP_SIZE;
-use rara::reference::{Side, compact};
 use rara::types::NOT_CUT;
 use rara::{ClipOp, Mode, Raster, Settings};
+use rara_base::limits::SURVIVOR_GROUP_SIZE;
+use rara_reference::{Side, compact};
 
 use crate::classify;
 use crate::frame;

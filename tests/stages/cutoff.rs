@@ -1,10 +1,10 @@
 //! Stage `cutoff`: the records of the cut splats, by which pixels weigh them.
 
 use glam::Vec3;
-use rara::reference::{
+use rara::{Camera, Clip, ClipOp, ExactForm, Mode, Raster, Settings};
+use rara_reference::{
     Footprint, HalfSpace, Real, SplatCut, Vec3 as Vector, ViewTransform, cutoff, vec3,
 };
-use rara::{Camera, Clip, ClipOp, ExactForm, Mode, Raster, Settings};
 
 use crate::frame::{self, Stages};
 

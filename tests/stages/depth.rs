@@ -1,13 +1,13 @@
 //! Stage `depth`: how deep each survivor is, on average of what the clip leaves of it.
 
 use rara::gpu::{Bindings, Device, DeviceDesc};
-use rara::reference::depth;
-use rara::reference::{Footprint, Real, ViewTransform};
 use rara::types::{FrameCounts, Gaussian, SplatDepth};
 use rara::{
     Camera, Clip, ClipOp, ExpectedDepthDesc, Layer, LayerState, Mode, Raster, Renderer,
-    RendererDesc, Scene, SceneBuffers, Settings, ShFormat, TargetFormat,
+    RendererDesc, Scene, SceneBuffers, Settings, ShFormat,
 };
+use rara_reference::depth;
+use rara_reference::{Footprint, Real, ViewTransform};
 
 use crate::frame;
 use crate::layers;
@@ -79,7 +79,7 @@ fn renderer() -> (Device, Renderer) {
             .validation(true),
     );
     let device = device.expect("a device and the validation layer");
-    let format = TargetFormat::Float.vulkan();
+    let format = rara::ash::vk::Format::R32G32B32A32_SFLOAT;
     let desc = RendererDesc::new(format)
         .bindings(Bindings::Mixed)
         .expected_depth(Some(ExpectedDepthDesc::new(format)));

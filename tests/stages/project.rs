@@ -1,8 +1,8 @@
 //! Stage `project`: place, shape and colour of each survivor.
 
 use glam::{DMat4, Quat, Vec3};
-use rara::reference::{ViewTransform, harmonics, project, vec3};
 use rara::{Camera, Clip, Gaussians, Projection, Raster, Settings, ShFormat};
+use rara_reference::{ViewTransform, harmonics, project, vec3};
 
 use crate::frame::{self, Stages};
 use crate::ties::{largest, ulps};
@@ -116,7 +116,7 @@ fn compare(stages: &mut Stages, camera: &Camera, worst: &mut Apart) {
     }
 }
 
-fn basis_at(direction: rara::reference::Vec3<f32>) -> [f32; 16] {
+fn basis_at(direction: rara_reference::Vec3<f32>) -> [f32; 16] {
     harmonics::basis(direction * (1.0 / direction.length()))
 }
 

@@ -3,11 +3,11 @@
 use std::collections::BTreeSet;
 
 use glam::Vec3;
-use rara::limits::SORT_BITS;
-use rara::reference::sort;
 use rara::scene::{Kind, generate};
 use rara::types::FrameData;
 use rara::{Clip, Raster, Settings};
+use rara_base::limits::SORT_BITS;
+use rara_reference::sort;
 
 use crate::frame::{self, Stages};
 

@@ -1,9 +1,9 @@
 //! Stages `reclip` and `recut`: what a moved clip changes while the camera stands still.
 
 use bytemuck::Zeroable;
-use rara::reference::{Side, ViewTransform, classify};
 use rara::types::{CUT_AWAY, NOT_CUT, Quad, Splat};
 use rara::{Clip, ClipOp, Mode, Plane, Raster, Settings, Surface};
+use rara_reference::{Side, ViewTransform, classify};
 
 use crate::frame::{self, Stages};
 use crate::ties;

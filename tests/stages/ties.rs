@@ -1,8 +1,8 @@
 //! Ties: single precision may find another class than the twin at a threshold, and nowhere else.
 
 use glam::{DQuat, DVec3, Vec3};
-use rara::reference::{Side, ViewTransform, classify, clip};
 use rara::{Camera, Clip, Gaussians, Placement, Settings};
+use rara_reference::{Side, ViewTransform, classify, clip};
 
 use crate::common;
 

@@ -77,11 +77,11 @@ impl Host {
                 .enabled_extension_names(&extensions);
             let device = instance
                 .create_device(physical_device, &features.chain(info), None)
-                .map_err(Error::vulkan("vkCreateDevice"))?;
+                .map_err(rara_gpu::failed("vkCreateDevice"))?;
 
             let pipeline_cache = device
                 .create_pipeline_cache(&vk::PipelineCacheCreateInfo::default(), None)
-                .map_err(Error::vulkan("vkCreatePipelineCache"))?;
+                .map_err(rara_gpu::failed("vkCreatePipelineCache"))?;
             let mut host = Self {
                 queue: device.get_device_queue(support.queue_family, 0),
                 instance,
@@ -143,10 +143,10 @@ impl Host {
         unsafe {
             self.device
                 .reset_command_pool(slot.pool, vk::CommandPoolResetFlags::empty())
-                .map_err(Error::vulkan("vkResetCommandPool"))?;
+                .map_err(rara_gpu::failed("vkResetCommandPool"))?;
             self.device
                 .begin_command_buffer(slot.cmd, &info)
-                .map_err(Error::vulkan("vkBeginCommandBuffer"))?;
+                .map_err(rara_gpu::failed("vkBeginCommandBuffer"))?;
         }
         Ok(slot.cmd)
     }
@@ -261,13 +261,13 @@ impl Host {
             self.device.cmd_pipeline_barrier2(slot.cmd, &info);
             self.device
                 .end_command_buffer(slot.cmd)
-                .map_err(Error::vulkan("vkEndCommandBuffer"))?;
+                .map_err(rara_gpu::failed("vkEndCommandBuffer"))?;
             self.device
                 .reset_fences(&[slot.fence])
-                .map_err(Error::vulkan("vkResetFences"))?;
+                .map_err(rara_gpu::failed("vkResetFences"))?;
             self.device
                 .queue_submit2(self.queue, &submit, slot.fence)
-                .map_err(Error::vulkan("vkQueueSubmit2"))?;
+                .map_err(rara_gpu::failed("vkQueueSubmit2"))?;
         }
         self.submitted += 1;
         Ok(())
@@ -319,7 +319,7 @@ pub(crate) unsafe fn choose(
         };
         let devices = instance
             .enumerate_physical_devices()
-            .map_err(Error::vulkan("vkEnumeratePhysicalDevices"))?;
+            .map_err(rara_gpu::failed("vkEnumeratePhysicalDevices"))?;
         devices
             .into_iter()
             .filter(wanted)

@@ -1,7 +1,7 @@
 //! The part of the host that each frame in flight has to itself: commands, a target, and memory to read it back from.
 
+use rara::Result;
 use rara::ash::vk;
-use rara::{Error, Result};
 
 use super::{FRAMES, Host};
 
@@ -35,12 +35,12 @@ impl Host {
         let data = unsafe {
             self.device
                 .wait_for_fences(&[slot.fence], true, u64::MAX)
-                .map_err(Error::vulkan("vkWaitForFences"))?;
+                .map_err(rara_gpu::failed("vkWaitForFences"))?;
             let flags = vk::MemoryMapFlags::empty();
             let at = self
                 .device
                 .map_memory(slot.readback_memory, 0, vk::WHOLE_SIZE, flags)
-                .map_err(Error::vulkan("vkMapMemory"))?;
+                .map_err(rara_gpu::failed("vkMapMemory"))?;
             let data = std::slice::from_raw_parts(at.cast::<u8>(), bytes).to_vec();
             self.device.unmap_memory(slot.readback_memory);
             data
@@ -79,16 +79,16 @@ impl Host {
                 vk::CommandPoolCreateInfo::default().queue_family_index(self.support.queue_family);
             let pool = device
                 .create_command_pool(&info, None)
-                .map_err(Error::vulkan("vkCreateCommandPool"))?;
+                .map_err(rara_gpu::failed("vkCreateCommandPool"))?;
             let info = vk::CommandBufferAllocateInfo::default()
                 .command_pool(pool)
                 .command_buffer_count(1);
             let cmd = device
                 .allocate_command_buffers(&info)
-                .map_err(Error::vulkan("vkAllocateCommandBuffers"))?[0];
+                .map_err(rara_gpu::failed("vkAllocateCommandBuffers"))?[0];
             let fence = device
                 .create_fence(&vk::FenceCreateInfo::default(), None)
-                .map_err(Error::vulkan("vkCreateFence"))?;
+                .map_err(rara_gpu::failed("vkCreateFence"))?;
 
             let info = vk::ImageCreateInfo::default()
                 .image_type(vk::ImageType::TYPE_2D)
@@ -100,14 +100,14 @@ impl Host {
                 .usage(vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::TRANSFER_SRC);
             let image = device
                 .create_image(&info, None)
-                .map_err(Error::vulkan("vkCreateImage"))?;
+                .map_err(rara_gpu::failed("vkCreateImage"))?;
             let image_memory = self.memory(
                 device.get_image_memory_requirements(image),
                 vk::MemoryPropertyFlags::DEVICE_LOCAL,
             )?;
             device
                 .bind_image_memory(image, image_memory, 0)
-                .map_err(Error::vulkan("vkBindImageMemory"))?;
+                .map_err(rara_gpu::failed("vkBindImageMemory"))?;
             let info = vk::ImageViewCreateInfo::default()
                 .image(image)
                 .view_type(vk::ImageViewType::TYPE_2D)
@@ -115,21 +115,21 @@ impl Host {
                 .subresource_range(WHOLE);
             let view = device
                 .create_image_view(&info, None)
-                .map_err(Error::vulkan("vkCreateImageView"))?;
+                .map_err(rara_gpu::failed("vkCreateImageView"))?;
 
             let info = vk::BufferCreateInfo::default()
                 .size(self.readback_size())
                 .usage(vk::BufferUsageFlags::TRANSFER_DST);
             let readback = device
                 .create_buffer(&info, None)
-                .map_err(Error::vulkan("vkCreateBuffer"))?;
+                .map_err(rara_gpu::failed("vkCreateBuffer"))?;
             let readback_memory = self.memory(
                 device.get_buffer_memory_requirements(readback),
                 vk::MemoryPropertyFlags::HOST_VISIBLE | vk::MemoryPropertyFlags::HOST_COHERENT,
             )?;
             device
                 .bind_buffer_memory(readback, readback_memory, 0)
-                .map_err(Error::vulkan("vkBindBufferMemory"))?;
+                .map_err(rara_gpu::failed("vkBindBufferMemory"))?;
             Ok(Slot {
                 pool,
                 cmd,
@@ -168,7 +168,7 @@ impl Host {
                 .memory_type_index(index.expect("Vulkan promises such memory") as u32);
             self.device
                 .allocate_memory(&info, None)
-                .map_err(Error::vulkan("vkAllocateMemory"))
+                .map_err(rara_gpu::failed("vkAllocateMemory"))
         }
     }
 

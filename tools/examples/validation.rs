@@ -4,8 +4,8 @@
 use std::ffi::{CStr, c_void};
 use std::sync::Mutex;
 
+use rara::Result;
 use rara::ash::{Entry, Instance, ext, vk};
-use rara::{Error, Result};
 
 /// The layer's warnings and errors, without those that are allowed.
 pub(crate) type Messages = Mutex<Vec<String>>;
@@ -54,7 +54,10 @@ pub(crate) unsafe fn instance(
     if !validation {
         // SAFETY: everything pointed to outlives the call.
         let instance = unsafe { entry.create_instance(&info, None) };
-        return Ok((instance.map_err(Error::vulkan("vkCreateInstance"))?, None));
+        return Ok((
+            instance.map_err(rara_gpu::failed("vkCreateInstance"))?,
+            None,
+        ));
     }
     let layers = [c"VK_LAYER_KHRONOS_validation".as_ptr()];
     let extensions = [
@@ -82,11 +85,11 @@ pub(crate) unsafe fn instance(
     unsafe {
         let instance = entry
             .create_instance(&info, None)
-            .map_err(Error::vulkan("vkCreateInstance"))?;
+            .map_err(rara_gpu::failed("vkCreateInstance"))?;
         let loader = ext::debug_utils::Instance::new(entry, &instance);
         let messenger = loader
             .create_debug_utils_messenger(&reports, None)
-            .map_err(Error::vulkan("vkCreateDebugUtilsMessengerEXT"))?;
+            .map_err(rara_gpu::failed("vkCreateDebugUtilsMessengerEXT"))?;
         Ok((instance, Some((loader, messenger))))
     }
 }

@@ -506,7 +506,7 @@ impl Order for OneJob<'_> {
             job: self.planned.stamp.clone(),
             version: env!("CARGO_PKG_VERSION").into(),
             driver: lock(&self.driver).clone(),
-            worker: rara::files::mark().into(),
+            worker: rara_base::files::mark().into(),
             at: since.map_or(0.0, |since| since.as_secs_f64()),
             seconds,
             work: self.planned.plan.work,

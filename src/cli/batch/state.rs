@@ -10,8 +10,9 @@ use std::io::{Read as _, Seek as _, SeekFrom, Write as _};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-use rara::files::mark;
-use rara::{Error, Result, fnv};
+use rara::{Error, Result};
+use rara_base::files::mark;
+use rara_base::fnv;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 

@@ -11,8 +11,8 @@ use std::path::{Path, PathBuf};
 
 use clap::builder::{OsStringValueParser, TypedValueParser};
 use clap::{Args, ValueEnum};
-use rara::files::Unfinished;
 use rara::{Error, Picture, Result};
+use rara_base::files::Unfinished;
 
 use super::failure::Failure;
 use super::output;

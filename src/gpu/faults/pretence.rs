@@ -8,7 +8,7 @@ use super::{driver, with};
 
 /// The kind of device that a physical device pretends to be.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Pretence {
+pub enum Pretence {
     Vulkan11,
     Vulkan12,
     /// One without a single extension.

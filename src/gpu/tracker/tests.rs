@@ -2,7 +2,7 @@
 
 use super::Access::*;
 use super::*;
-use crate::gpu::access::{DRAW_STAGES, MESH_STAGES};
+use crate::access::{DRAW_STAGES, MESH_STAGES};
 use ash::vk::Handle;
 
 fn buffer(number: u64) -> vk::Buffer {

@@ -7,7 +7,7 @@ use glam::DVec3;
 use rara::scene::extent_along;
 use rara::{
     Camera, Clip, Decay, ExactForm, Headless, Mode, Picture, Plane, Precision, Result, Scene,
-    Settings, Surface, reference,
+    Settings, Surface,
 };
 use serde::Serialize;
 
@@ -77,10 +77,10 @@ impl<'a> Judge<'a> {
     ) -> Result<Self> {
         let clips = sweep(scene, clip, steps)?;
         let truth = truth_settings(look);
-        let draw = |clip: &Clip| reference::render::<f64>(scene, camera, clip, &truth).picture;
+        let draw = |clip: &Clip| rara_reference::render::<f64>(scene, camera, clip, &truth).picture;
         let truths: Vec<_> = clips.iter().map(draw).collect();
         let hard = look.mode(Mode::Hard);
-        let hard = reference::render::<f64>(scene, camera, &clips[0], &hard).picture;
+        let hard = rara_reference::render::<f64>(scene, camera, &clips[0], &hard).picture;
         let band = band(&hard, &truths[0])?;
         Ok(Self {
             scene,
@@ -122,7 +122,8 @@ impl<'a> Judge<'a> {
         let mut twins = self.twins.borrow_mut();
         let known = twins.iter().position(|(have, _)| *have == key);
         let index = known.unwrap_or_else(|| {
-            let frame = reference::render::<f64>(self.scene, self.camera, &self.clips[0], &key);
+            let frame =
+                rara_reference::render::<f64>(self.scene, self.camera, &self.clips[0], &key);
             twins.push((key, frame.picture));
             twins.len() - 1
         });

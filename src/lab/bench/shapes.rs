@@ -4,7 +4,7 @@ use crate::measure;
 use glam::{DQuat, DVec3};
 use rara::clip::Expression;
 use rara::scene::Bounds;
-use rara::{Camera, Headless, Mode, Plane, Result, Scene, Settings, reference};
+use rara::{Camera, Headless, Mode, Plane, Result, Scene, Settings};
 use serde::Serialize;
 
 use crate::frames::picture;
@@ -44,7 +44,8 @@ pub(crate) fn lines(
     let mut lines = Vec::new();
     for (name, region) in &regions {
         let clip = region.clip();
-        let truth = |settings: &Settings| reference::render::<f64>(scene, camera, &clip, settings);
+        let truth =
+            |settings: &Settings| rara_reference::render::<f64>(scene, camera, &clip, settings);
         let cut = truth(&truth_settings(look)).picture;
         let (drawn, stats) = picture(headless, camera, &clip, &exact)?;
         let by_centres = picture(headless, camera, &clip, &hard)?.0;

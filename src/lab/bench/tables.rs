@@ -1,6 +1,6 @@
 //! What was measured, as tables.
 
-use rara::counted::counted;
+use rara_base::counted::counted;
 
 use super::judge::Measures;
 use super::report::BenchReport;

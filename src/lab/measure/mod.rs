@@ -17,9 +17,9 @@ pub use processor::processor_ms;
 pub use qualities::{Qualities, Truth, edge_distance, pieces_apart, share_of_way};
 pub use region::Region;
 
-use rara::reference::differences::channels;
-pub use rara::reference::differences::{Differences, differences, psnr, same_size};
 use rara::{Picture, Result};
+use rara_reference::differences::channels;
+pub use rara_reference::differences::{Differences, differences, psnr, same_size};
 
 /// The differences between two pictures.
 ///

@@ -1,6 +1,6 @@
 //! The six qualities that the paper asks people about, measured in every case.
 
-use rara::{Clip, Headless, Mode, Picture, Result, Settings, reference};
+use rara::{Clip, Headless, Mode, Picture, Result, Settings};
 use serde::{Deserialize, Serialize};
 
 use crate::bench::{band, truth_settings, ways};
@@ -42,7 +42,7 @@ pub(super) fn measure(
 ) -> Result<(Outcome, Pictures)> {
     let settings = truth_settings(&Settings::default());
     let draw = |clip: &Clip, settings: &Settings| {
-        reference::render::<f64>(scene, &case.camera, clip, settings).picture
+        rara_reference::render::<f64>(scene, &case.camera, clip, settings).picture
     };
     let middle = case.at(0.5)?;
     let cut = draw(&middle, &settings);

@@ -1,7 +1,7 @@
 //! The six qualities over all cases, as tables and charts.
 
 use rara::Settings;
-use rara::counted::counted;
+use rara_base::counted::counted;
 
 use super::perception::{Outcome, defect, measured};
 use crate::bench::ways;

@@ -6,9 +6,9 @@ use std::path::Path;
 use askama::Template;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use rara::counted::counted;
-use rara::files::write_atomically;
 use rara::{Error, Result, Settings};
+use rara_base::counted::counted;
+use rara_base::files::write_atomically;
 
 use super::results::{Choices, Maps, Results};
 use super::{ablation, efficiency, qualities, series};

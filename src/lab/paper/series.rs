@@ -3,7 +3,6 @@
 use rara::scene::{Kind, generate};
 use rara::{
     Camera, Clip, ClipOp, Gaussians, Headless, Layer, Mode, Plane, Result, Scene, Settings,
-    reference,
 };
 use serde::{Deserialize, Serialize};
 
@@ -146,7 +145,7 @@ fn point(
 ) -> Result<(Vec<Costs>, f64)> {
     let base = Settings::default();
     headless.load_as(scene, base.precision.sh)?;
-    let truth = reference::render::<f64>(scene, camera, clip, &truth_settings(&base)).picture;
+    let truth = rara_reference::render::<f64>(scene, camera, clip, &truth_settings(&base)).picture;
     let settings = MODES.map(|(_, mode)| (clip, base.mode(mode)));
     let times = time(headless, scene, camera, &settings, frames)?;
     let mut modes = Vec::new();

@@ -1,6 +1,6 @@
 //! Correctness first: what draws a wrong picture is not timed.
 
-use rara::{Headless, Raster, Result, reference};
+use rara::{Headless, Raster, Result};
 
 use super::numbers::Measurements;
 use super::run::{Run, in_mode, rasters};
@@ -21,7 +21,7 @@ pub(super) fn measure(run: &mut Run<'_>, world: &World, numbers: Measurements) -
     rasters.push(("auto", Raster::Auto));
     for (mode_name, mode) in MODES {
         let settings = in_mode(mode);
-        let truth = reference::render::<f64>(&world.scene, &camera, &clip, &settings).picture;
+        let truth = rara_reference::render::<f64>(&world.scene, &camera, &clip, &settings).picture;
         for &(raster_name, raster) in &rasters {
             headless.render(&camera, &clip, &settings.raster(raster))?;
             let decibels = psnr(&headless.picture()?, &truth)?.min(999.0);

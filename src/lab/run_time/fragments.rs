@@ -3,8 +3,8 @@
 
 use std::sync::Mutex;
 
-use rara::reference::{Splat, ViewTransform, classify, compact, project, sort, splat};
 use rara::{Camera, Clip, Decay, Gaussians, Settings};
+use rara_reference::{Splat, ViewTransform, classify, compact, project, sort, splat};
 
 /// Rows that a thread counts in at a time.
 const BAND: u32 = 16;

@@ -16,9 +16,9 @@ mod world;
 
 use std::process::id;
 
-use rara::counted::counted;
 use rara::scene::Kind;
 use rara::{Error, Headless, Result};
+use rara_base::counted::counted;
 
 use crate::table::Table;
 use numbers::Measurements;

@@ -108,7 +108,7 @@ impl Measurements {
 
     fn title(&self) -> String {
         let (section, scene, [width, height]) = (self.section, &self.scene, self.size);
-        let gaussians = rara::counted::counted(self.gaussians, "Gaussian");
+        let gaussians = rara_base::counted::counted(self.gaussians, "Gaussian");
         let raster = match self.raster {
             "" => String::new(),
             raster => format!(", {raster}"),

@@ -4,12 +4,12 @@ use std::time::Instant;
 
 use rara::ash::util::read_spv;
 use rara::ash::vk;
-use rara::gpu::{
+use rara::{Error, Result};
+use rara_base::limits::{TILE_HEIGHT, TILE_WIDTH};
+use rara_gpu::{
     Bindings, Buffer, BufferAccess, BufferDesc, BufferUse, ComputeDesc, ComputePipeline, Device,
     Groups, Location, Recorder, Shader, Timer,
 };
-use rara::limits::{TILE_HEIGHT, TILE_WIDTH};
-use rara::{Error, Result};
 
 /// Splats that cover every tile, and their opacity: each is above 1/255 everywhere, and the last still gets light.
 const SPLATS: u32 = 128;

@@ -6,8 +6,9 @@ use glam::DVec3;
 
 use super::make::{PLAIN, any_normal};
 use super::{Case, Regime};
-use rara::scene::{Random, load};
+use rara::scene::load;
 use rara::{Clip, ClipOp, Gaussians, Plane};
+use rara_scene::Random;
 
 pub fn regimes() -> Vec<Regime> {
     vec![

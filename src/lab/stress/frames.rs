@@ -5,8 +5,8 @@ use glam::{DVec3, Quat, Vec3};
 use super::make::{PLAIN, Setup, any_normal, orientation, push, set_colour, strewn};
 use super::places::mix;
 use super::{Case, Regime};
-use rara::scene::Random;
 use rara::{Camera, Clip, ClipOp, Gaussians, Plane};
+use rara_scene::Random;
 
 pub fn regimes() -> Vec<Regime> {
     vec![

@@ -3,9 +3,9 @@
 use glam::{DMat3, DQuat, DVec3, Quat};
 
 use super::Case;
-use rara::reference::{Footprint, ViewTransform};
-use rara::scene::Random;
 use rara::{Camera, Clip, ClipOp, Gaussians, Plane, Projection};
+use rara_reference::{Footprint, ViewTransform};
+use rara_scene::Random;
 
 /// The viewing geometry of a case.
 #[derive(Debug, Clone, Copy)]

@@ -4,9 +4,8 @@ use serde::Serialize;
 
 use super::{Case, Limit, Regime, TARGET};
 use crate::measure::{Differences, differences};
-use rara::limits::ALPHA_MIN_INVERSE;
-use rara::reference;
 use rara::{Clip, Counts, Decay, ExactForm, Headless, Mode, Picture, Raster, Result, Settings};
+use rara_base::limits::ALPHA_MIN_INVERSE;
 
 /// The forms of the cut that are measured. Mode `rara` only has to be finite and right in the picture: its length
 /// ratio jumps where a ray leaves the ellipsoid.
@@ -189,8 +188,8 @@ fn pictures(
     rasters.iter().map(draw).collect()
 }
 
-fn truth(case: &Case, clip: &Clip, settings: &Settings) -> reference::ReferenceFrame {
-    reference::render::<f64>(&case.scene, &case.camera, clip, settings)
+fn truth(case: &Case, clip: &Clip, settings: &Settings) -> rara_reference::ReferenceFrame {
+    rara_reference::render::<f64>(&case.scene, &case.camera, clip, settings)
 }
 
 /// Largest difference of a count.

@@ -7,7 +7,7 @@ use super::make::{
 };
 use super::{Case, Regime};
 use rara::Projection;
-use rara::scene::Random;
+use rara_scene::Random;
 
 pub fn regimes() -> Vec<Regime> {
     vec![

@@ -5,8 +5,8 @@ use glam::DVec3;
 use super::make::{PLAIN, any_normal, axes, cases, on_plane, pop};
 use super::places::mix;
 use super::{Case, Regime};
-use rara::scene::Random;
 use rara::{Camera, Clip, ClipOp, Plane, Surface};
+use rara_scene::Random;
 
 pub fn regimes() -> Vec<Regime> {
     vec![

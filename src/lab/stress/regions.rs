@@ -6,7 +6,7 @@ use super::make::{PLAIN, Setup, between, on_surface};
 use super::{Case, Regime};
 use rara::Clip;
 use rara::clip::Expression;
-use rara::scene::Random;
+use rara_scene::Random;
 
 /// Both sides of the region are within a hundredth of a splat, and each is known to a thousandth of that.
 const THIN: &str = "24 bits place both sides of a region that is a thousandth as thick as wide to a thousandth of a splat";

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::make::{PLAIN, Setup, any_normal, between, cases};
 use super::{Case, Regime};
-use rara::scene::Random;
+use rara_scene::Random;
 
 /// The cut of a splat whose eye is inside is as sharp as a pixel only where the line of sight runs along the plane.
 const WIDE: &str = "splats of 1e7 px: 24 bits place a cut that runs along the line of sight to a thousandth of a pixel";

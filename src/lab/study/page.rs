@@ -3,8 +3,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use rara::files::write_atomically;
 use rara::{Camera, Error, Headless, HeadlessDesc, Mode, Result};
+use rara_base::files::write_atomically;
 use serde::Serialize;
 
 use super::metric::Metric;

@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use glam::DVec3;
-use rara::{Headless, Mode, Picture, Result, Settings, fnv};
+use rara::{Headless, Mode, Picture, Result, Settings};
+use rara_base::fnv;
 use serde::Serialize;
 
 use crate::cases::Case;

@@ -7,8 +7,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use askama::Template;
-use rara::files::write_atomically;
 use rara::{Error, Result};
+use rara_base::files::write_atomically;
 
 use super::evaluation::{Evaluation, evaluate};
 use super::metric::Metric;

@@ -1,8 +1,8 @@
 //! The tiles' lists.
 
-use crate::gpu::DeviceShape;
 use crate::passes::plan::Plan;
 use crate::passes::storage::memory;
+use rara_gpu::DeviceShape;
 
 memory! {
     /// The tiles' lists, one after the other.

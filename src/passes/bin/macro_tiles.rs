@@ -2,7 +2,6 @@
 //! lists each tile's splats in batches of a macro-tile's. Pairs are written by whoever owns the place that they go to, so that
 //! a splat over the whole picture costs its tiles and nobody waits for it.
 
-use crate::limits;
 use crate::passes::bin::lists::{self, pairs};
 use crate::passes::pipelines::OfPlan;
 use crate::passes::plan::Plan;
@@ -16,6 +15,7 @@ use crate::passes::storage::{buffers, memory};
 use crate::passes::weight::Weight;
 use crate::passes::{cutoff, project, shared, sort};
 use crate::types::TilesData;
+use rara_base::limits;
 
 memory! {
     /// The pairs of each partition of splats, and of its chunks.

@@ -9,8 +9,8 @@ pub(super) mod lists;
 pub(super) mod macro_tiles;
 mod spans;
 
-use crate::gpu::DeviceShape;
 use crate::passes::stage::Stage;
+use rara_gpu::DeviceShape;
 
 pub(crate) static STAGE: Stage = Stage {
     name: "bin",

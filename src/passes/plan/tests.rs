@@ -3,12 +3,12 @@
 use glam::DVec3;
 
 use super::*;
-use crate::clip::Plane;
 use crate::passes::pipelines::{Kernel, PipelineKey};
 use crate::passes::shaders::project;
 use crate::passes::weight::Weight;
-use crate::scene::{Kind, Layer, generate};
-use crate::settings::Mode;
+use rara_scene::clip::Plane;
+use rara_scene::settings::Mode;
+use rara_scene::{Kind, Layer, generate};
 
 fn plan(mode: Mode, planes: usize) -> Plan {
     let thousand = generate(Kind::General, 1000, 1);
@@ -36,10 +36,7 @@ fn plan(mode: Mode, planes: usize) -> Plan {
     let camera = Camera::look_at(eye, DVec3::ZERO, -DVec3::Y, 50.0, (64, 64));
     let plane = Plane::new(DVec3::X, 0.0).expect("a finite normal");
     let clip = Clip::of(vec![plane; planes], ClipOp::And);
-    let settings = Settings {
-        mode,
-        ..Settings::default()
-    };
+    let settings = Settings::default().mode(mode);
     Plan::new(facts, &camera.expect("a view"), &clip, &settings).expect("a plan")
 }
 

@@ -1,10 +1,10 @@
 //! Uploads by the library and by a host.
 
 use super::*;
-use crate::gpu::{BufferDesc, Location, testing};
 use crate::passes::sh_storage;
-use crate::scene::{Kind, Layer, generate};
 use crate::types::Gaussian;
+use rara_gpu::{BufferDesc, Location, testing};
+use rara_scene::{Kind, Layer, generate};
 
 #[test]
 fn a_host_uploads_the_same_bytes() {

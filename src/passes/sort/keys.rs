@@ -2,13 +2,13 @@
 
 use std::mem::offset_of;
 
-use crate::gpu::DeviceShape;
-use crate::limits;
 use crate::passes::plan::Plan;
 use crate::passes::radix;
 use crate::passes::recording::{Groups, counted};
 use crate::passes::storage::{Storage, memory};
 use crate::types::FrameCounts;
+use rara_base::limits;
+use rara_gpu::DeviceShape;
 
 memory! {
     keys: |plan| 4 * plan.gaussians();

@@ -9,9 +9,9 @@ mod keys;
 mod radix;
 mod runs;
 
-use crate::gpu::DeviceShape;
 use crate::passes::recording::Recording;
 use crate::passes::stage::Stage;
+use rara_gpu::DeviceShape;
 
 pub(super) use keys::{order, spare};
 

@@ -5,7 +5,8 @@ use glam::DVec3;
 use super::Side;
 use super::sides::combined;
 use super::surface::surface_box_side;
-use crate::{Clip, Mode, Settings};
+use rara_scene::clip::Clip;
+use rara_scene::settings::{Mode, Settings};
 
 /// Gaussians whose centres lie in a box.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -7,10 +7,10 @@
 
 use super::UnitSurface;
 use super::crossing::{PHI_ONE, Sight, SurfaceCrossing};
-use crate::ClipOp;
-use crate::clip::postfix::answer;
-use crate::reference::orthant::{Threshold, both, orthant};
-use crate::reference::real::{Real, Vec3};
+use crate::orthant::{Threshold, both, orthant};
+use crate::real::{Real, Vec3};
+use rara_scene::clip::ClipOp;
+use rara_scene::clip::postfix::answer;
 
 /// The surfaces that cut a splat, and how they combine.
 #[derive(Debug, Clone, PartialEq)]
@@ -69,12 +69,12 @@ impl<T: Real> Combination<T> {
     }
 
     /// True when the region keeps a point of the unit space.
-    pub(in crate::reference) fn keeps(&self, point: Vec3<T>) -> bool {
+    pub(crate) fn keeps(&self, point: Vec3<T>) -> bool {
         self.answer(&|i| self.0[i].0.at(point) >= T::zero())
     }
 
     /// The measure of what is kept of a line from `start` to `end`, by the measure of a stretch.
-    pub(in crate::reference) fn measure(
+    pub(crate) fn measure(
         &self,
         sight: &Sight<T>,
         (start, end): (T, T),
@@ -116,7 +116,7 @@ impl<T: Real> Combination<T> {
     }
 
     /// The share that is kept in a pixel.
-    pub(in crate::reference) fn share(&self, sight: &Sight<T>) -> T {
+    pub(crate) fn share(&self, sight: &Sight<T>) -> T {
         if let [(surface, _)] = &self.0[..] {
             return sight.share(surface);
         }

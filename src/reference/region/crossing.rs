@@ -1,17 +1,17 @@
 //! Where a surface that bends stands on a pixel's line of sight.
 //!
 //! Given the pixel, the point u of the Gaussian's unit space is a normal variable with mean m and covariance
-//! `C = I - B^T S^-1 B` (see [`exact`](crate::reference::exact)). A surface's function there is
+//! `C = I - B^T S^-1 B` (see [`exact`](crate::exact)). A surface's function there is
 //! `F(m + x) = F(m) + h . x + x . Q x`, with the gradient h at m. It varies most along the direction `w = C h / n`, with
 //! `n^2 = h . C h`; along it, `x = tau w` with tau ~ N(0, 1), it is a quadratic function of tau, whose two crossings are
 //! found exactly. In the other directions it varies to second order alone: its mean moves by what the trace of Q C has
 //! beyond `w . Q w`. Without low-pass w is the line of sight itself, and all of this is exact; for a plane Q is zero, and it
 //! is the plane's z.
 
-use crate::reference::footprint::{determinant, scaled};
-use crate::reference::orthant::{Direction, Threshold};
-use crate::reference::real::{Real, Vec3};
-use crate::reference::region::UnitSurface;
+use crate::footprint::{determinant, scaled};
+use crate::orthant::{Direction, Threshold};
+use crate::real::{Real, Vec3};
+use crate::region::UnitSurface;
 
 /// Beyond this Phi is taken for 0 or 1.
 pub(super) const PHI_ONE: f64 = 4.5;
@@ -22,7 +22,7 @@ const BENT: f64 = 0.05;
 
 /// A pixel's line of sight in a Gaussian's unit space.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::reference) struct Sight<T> {
+pub(crate) struct Sight<T> {
     gradients: [Vec3<T>; 2],
     c: Vec3<T>,
     low_pass: T,
@@ -30,7 +30,7 @@ pub(in crate::reference) struct Sight<T> {
     /// What counts of the variance across the line: all, but where nodes stand for a part of it.
     lateral: T,
     /// The mean m, given the pixel.
-    pub(in crate::reference) mean: Vec3<T>,
+    pub(crate) mean: Vec3<T>,
 }
 
 /// A surface on a line of sight: its nearest crossing, and the other one where it counts.
@@ -46,14 +46,14 @@ pub(super) struct SurfaceCrossing<T> {
 
 impl<T: Real> Sight<T> {
     /// The line of sight at an offset from the splat's centre, pixels.
-    pub(in crate::reference) fn new(gradients: [Vec3<T>; 2], delta: [T; 2]) -> Self {
+    pub(crate) fn new(gradients: [Vec3<T>; 2], delta: [T; 2]) -> Self {
         let (gradients, factor, low_pass) = scaled(gradients);
         Self::of(gradients, delta.map(|d| d * factor), low_pass)
     }
 
     /// The line itself without what the low-pass adds, and its point nearest the centre. Gaussians without thickness may
     /// have none.
-    pub(in crate::reference) fn unfiltered(gradients: [Vec3<T>; 2], delta: [T; 2]) -> Option<Self> {
+    pub(crate) fn unfiltered(gradients: [Vec3<T>; 2], delta: [T; 2]) -> Option<Self> {
         let [b1, b2] = gradients;
         let largest = b1.largest().max(b2.largest()).max(T::of(1e-30));
         let factor = T::one() / largest;
@@ -240,7 +240,7 @@ impl<T: Real> Sight<T> {
     }
 
     /// A plane's z.
-    pub(in crate::reference) fn plane_z(&self, plane: &UnitSurface<T>) -> T {
+    pub(crate) fn plane_z(&self, plane: &UnitSurface<T>) -> T {
         let n = self.variance(plane.half_space.normal).sqrt();
         plane.half_space.distance(self.mean) / n.max(T::of(1e-30))
     }

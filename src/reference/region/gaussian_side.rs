@@ -3,8 +3,10 @@
 use super::Side;
 use super::sides::combined;
 use super::surface::surface_gaussian_side;
-use crate::reference::real::{Real, Vec3};
-use crate::{Clip, Gaussians, Mode, Settings};
+use crate::real::{Real, Vec3};
+use rara_scene::Gaussians;
+use rara_scene::clip::Clip;
+use rara_scene::settings::{Mode, Settings};
 
 /// The side of Gaussian `index`, which has the half axes `axes` and a band of `deviations` standard deviations. It is never
 /// [`Side::Culled`].

@@ -1,6 +1,6 @@
 //! The half-space that a surface keeps of a Gaussian that it cuts.
 
-use crate::reference::real::{Real, Vec3};
+use crate::real::{Real, Vec3};
 
 /// The half-space that a surface keeps of a Gaussian, in the Gaussian's unit space: the point `mu + M u` is visible iff
 /// `offset + normal . u >= 0`.
@@ -14,7 +14,7 @@ pub struct HalfSpace<T> {
 
 impl<T: Real> HalfSpace<T> {
     /// The half-space that keeps the other side.
-    pub(in crate::reference) fn complement(self) -> Self {
+    pub(crate) fn complement(self) -> Self {
         Self {
             normal: -self.normal,
             offset: -self.offset,
@@ -22,7 +22,7 @@ impl<T: Real> HalfSpace<T> {
     }
 
     /// The signed distance of a point of the unit space, positive on the visible side.
-    pub(in crate::reference) fn distance(&self, point: Vec3<T>) -> T {
+    pub(crate) fn distance(&self, point: Vec3<T>) -> T {
         self.offset + self.normal.dot(point)
     }
 }

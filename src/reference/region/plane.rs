@@ -3,8 +3,9 @@
 use glam::DVec3;
 
 use super::{HalfSpace, Side};
-use crate::reference::real::{Real, Vec3, vec3};
-use crate::{Gaussians, Plane};
+use crate::real::{Real, Vec3, vec3};
+use rara_scene::Gaussians;
+use rara_scene::clip::Plane;
 
 /// The plane seen from inside Gaussian `index`. The distance is taken in double precision and rounded even in f32: far
 /// from the world's origin its two terms cancel, and the GPU computes it in two floats for that reason.

@@ -3,8 +3,9 @@
 use glam::DVec3;
 
 use super::{HalfSpace, Side};
-use crate::reference::real::{Real, Vec3, vec3};
-use crate::{Gaussians, Quadric};
+use crate::real::{Real, Vec3, vec3};
+use rara_scene::Gaussians;
+use rara_scene::clip::Quadric;
 
 /// A symmetric matrix.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -97,7 +98,7 @@ pub struct UnitSurface<T> {
 
 impl<T: Real> UnitSurface<T> {
     /// The same surface with its numbers divided by the largest one of its slopes.
-    pub(in crate::reference) fn scaled(&self) -> Self {
+    pub(crate) fn scaled(&self) -> Self {
         let bend = self.bend.diagonal.largest().max(self.bend.across.largest());
         let size = self.half_space.normal.largest().max(bend);
         let has_slope = size > T::zero();
@@ -115,17 +116,17 @@ impl<T: Real> UnitSurface<T> {
     }
 
     /// The function of a point of the unit space, positive on the visible side.
-    pub(in crate::reference) fn at(&self, point: Vec3<T>) -> T {
+    pub(crate) fn at(&self, point: Vec3<T>) -> T {
         self.half_space.distance(point) + self.bend.form(point)
     }
 
     /// Its gradient there.
-    pub(in crate::reference) fn gradient(&self, point: Vec3<T>) -> Vec3<T> {
+    pub(crate) fn gradient(&self, point: Vec3<T>) -> Vec3<T> {
         self.half_space.normal + self.bend.times(point) * T::of(2.0)
     }
 
     /// True for a plane.
-    pub(in crate::reference) fn is_flat(&self) -> bool {
+    pub(crate) fn is_flat(&self) -> bool {
         self.bend == Symmetric::zero()
     }
 }
@@ -276,7 +277,7 @@ pub(super) fn crossings(quadric: &Quadric, start: DVec3, step: DVec3) -> Vec<f64
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Random;
+    use rara_scene::Random;
 
     fn normal(random: &mut Random) -> f64 {
         (0..12).map(|_| random.unit()).sum::<f64>() - 6.0
@@ -363,8 +364,7 @@ mod tests {
         scene.push(position, scale, turn, 0.919_330_36, &[0.0; 3]);
         let (from, to) = (DVec3::new(-0.4, -0.3, 0.0), DVec3::new(0.5, 0.4, 0.2));
         let quadric = Quadric::cylinder(from, to, 0.3).unwrap();
-        let axes =
-            crate::reference::footprint::half_axes::<f64>(scene.scales()[0], scene.rotations()[0]);
+        let axes = crate::footprint::half_axes::<f64>(scene.scales()[0], scene.rotations()[0]);
         let surface = unit_surface(&quadric, &scene, 0, &axes);
         let deviations = (2.0 * (255.0 * 0.919_330_36_f64).ln()).sqrt();
         assert_eq!(gaussian_side(&surface, deviations), Side::Cutoff);

@@ -2,10 +2,12 @@
 
 use super::surface::unit_surface;
 use super::{Side, UnitSurface, surface_gaussian_side};
-use crate::clip::postfix::{answer, postfix};
-use crate::limits::MAX_CUTTING;
-use crate::reference::real::{Real, Vec3};
-use crate::{Clip, ClipOp, Gaussians, Settings};
+use crate::real::{Real, Vec3};
+use rara_base::limits::MAX_CUTTING;
+use rara_scene::Gaussians;
+use rara_scene::clip::postfix::{answer, postfix};
+use rara_scene::clip::{Clip, ClipOp};
+use rara_scene::settings::Settings;
 
 /// What is left of a region.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,7 +36,7 @@ impl<T: Real> RegionRest<T> {
     }
 
     /// The operation that joins all surfaces, if there is only one such operation and none of the surfaces bends.
-    pub(in crate::reference) fn as_planes(&self) -> Option<ClipOp> {
+    pub(crate) fn as_planes(&self) -> Option<ClipOp> {
         let Self::Cut(surfaces) = self else {
             return None;
         };
@@ -48,7 +50,7 @@ impl<T: Real> RegionRest<T> {
 /// What is left of the region of Gaussian `index`, which has the half axes `axes` and a band of `deviations` standard
 /// deviations. Beyond [`MAX_CUTTING`] surfaces only those count that are nearest; of the others it is on the side of its
 /// centre.
-pub(in crate::reference) fn reduced<T: Real>(
+pub(crate) fn reduced<T: Real>(
     scene: &Gaussians,
     index: usize,
     axes: &[Vec3<T>; 3],

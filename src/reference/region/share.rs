@@ -1,8 +1,8 @@
 //! A pixel's share of a splat that several surfaces cut.
 
-use crate::ClipOp;
-use crate::reference::orthant::{Threshold, orthant};
-use crate::reference::real::Real;
+use crate::orthant::{Threshold, orthant};
+use crate::real::Real;
+use rara_scene::clip::ClipOp;
 
 /// The share of a splat in one pixel that is kept by all surfaces, or by any.
 pub fn share<T: Real>(op: ClipOp, surfaces: impl Iterator<Item = Threshold<T>>) -> T {

@@ -1,7 +1,7 @@
 //! The region's answers, made from those of its surfaces.
 
 use super::Side;
-use crate::{Clip, ClipOp, Surface};
+use rara_scene::clip::{Clip, ClipOp, Surface};
 
 /// The region's side of something, from its surfaces' sides. No intersection holds what one surface drops, and every union
 /// holds what one keeps, whatever the others say; else it is cut where one of them cuts it.
@@ -25,7 +25,7 @@ pub(super) fn combined(clip: &Clip, side: &dyn Fn(&Surface) -> Side) -> Side {
 }
 
 /// True when an intersection or a union keeps a point; `kept` says which of its surfaces keep it.
-pub(in crate::reference) fn keeps(op: ClipOp, mut kept: impl Iterator<Item = bool>) -> bool {
+pub(crate) fn keeps(op: ClipOp, mut kept: impl Iterator<Item = bool>) -> bool {
     match op {
         ClipOp::And => kept.all(|k| k),
         ClipOp::Or => kept.any(|k| k),

@@ -4,12 +4,14 @@ use glam::DVec3;
 
 use super::quadric::Symmetric;
 use super::{HalfSpace, Side, UnitSurface, plane, quadric};
-use crate::reference::real::{Real, Vec3};
-use crate::{Gaussians, Mode, Settings, Surface};
+use crate::real::{Real, Vec3};
+use rara_scene::Gaussians;
+use rara_scene::clip::Surface;
+use rara_scene::settings::{Mode, Settings};
 
 /// On which side of a surface Gaussian `index` is, which has the half axes `axes` and a band of `deviations` standard
 /// deviations. A hard clip asks for the centre alone.
-pub(in crate::reference) fn surface_gaussian_side<T: Real>(
+pub(crate) fn surface_gaussian_side<T: Real>(
     surface: &Surface,
     scene: &Gaussians,
     index: usize,
@@ -49,7 +51,7 @@ pub(super) fn surface_box_side(
 }
 
 /// A surface in the unit space of Gaussian `index`.
-pub(in crate::reference) fn unit_surface<T: Real>(
+pub(crate) fn unit_surface<T: Real>(
     surface: &Surface,
     scene: &Gaussians,
     index: usize,
@@ -65,7 +67,7 @@ pub(in crate::reference) fn unit_surface<T: Real>(
 }
 
 /// The half-space that a surface keeps of Gaussian `index`, which it cuts, to first order about the Gaussian's centre.
-pub(in crate::reference) fn surface_half_space<T: Real>(
+pub(crate) fn surface_half_space<T: Real>(
     surface: &Surface,
     scene: &Gaussians,
     index: usize,
@@ -76,11 +78,7 @@ pub(in crate::reference) fn surface_half_space<T: Real>(
 
 /// The crossings of the line of points `start + t step` with a surface: all such t, in any order. No shader asks this;
 /// the truth does, which uses none of the renderer's formulas.
-pub(in crate::reference) fn surface_crossings(
-    surface: &Surface,
-    start: DVec3,
-    step: DVec3,
-) -> Vec<f64> {
+pub(crate) fn surface_crossings(surface: &Surface, start: DVec3, step: DVec3) -> Vec<f64> {
     match surface {
         Surface::Plane(plane) => plane::crossings(plane, start, step),
         Surface::Quadric(quadric) => quadric::crossings(quadric, start, step),

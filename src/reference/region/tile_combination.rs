@@ -6,8 +6,8 @@ use glam::{DVec2, DVec3, Vec3};
 
 use super::tile_side::{Sights, TILE_REACH, pixels, vector, within};
 use super::{HalfSpace, Side, Sight, Symmetric, UnitSurface};
-use crate::reference::real::{Vec3 as Vector, vec3};
-use crate::scene::Random;
+use crate::real::{Vec3 as Vector, vec3};
+use rara_scene::Random;
 
 /// A surface in the unit space, in single precision.
 #[derive(Debug, Clone, Copy)]
@@ -109,7 +109,7 @@ fn tiles_on_a_side_of_a_surface_have_no_pixel_on_the_other() {
             lean: shape * vector(&mut random, size) * [0.0, 1e-3, 1e-2][(round % 3) as usize],
             delta: vector(&mut random, 3.0 * size).truncate(),
             scale: 1.0,
-            low_pass: crate::limits::LOW_PASS,
+            low_pass: rara_base::limits::LOW_PASS,
         };
         // Surfaces that bend from hardly to within a deviation.
         let bend = 10_f32.powi(-(round / 32 % 5));

@@ -5,8 +5,8 @@
 
 use glam::{DVec2, DVec3, Vec2, Vec3, Vec4};
 
-use crate::limits::{TILE_HEIGHT, TILE_WIDTH};
-use crate::scene::Random;
+use rara_base::limits::{TILE_HEIGHT, TILE_WIDTH};
+use rara_scene::Random;
 
 /// From a tile's middle to its outermost pixel centres, px.
 pub(super) const TILE_REACH: Vec2 = Vec2::new(

@@ -2,8 +2,8 @@
 
 use super::quadrature::PixelRays;
 use super::*;
-use crate::clip::Expression;
 use glam::DVec2;
+use rara_scene::clip::Expression;
 
 /// A random surface near a splat: its text. `size` is its radius in the splat's largest deviations.
 fn shape(dice: &mut Dice, one: &One, size: f64) -> String {

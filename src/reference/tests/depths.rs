@@ -3,9 +3,9 @@
 use glam::DVec2;
 
 use super::*;
-use crate::reference::depth::SplatDepth;
-use crate::reference::exact::AffinePlane;
-use crate::reference::quadrature::PixelRays;
+use crate::depth::SplatDepth;
+use crate::exact::AffinePlane;
+use crate::quadrature::PixelRays;
 
 /// Random splats, planes and a pixel within a footprint: how far the mean depth is from the integrated one, in deviations of
 /// the splat's depth, at worst, and by how much the planes move it.
@@ -33,10 +33,7 @@ fn errors_in(view: &Camera, sigma: f64, (op, planes, slab): (ClipOp, usize, bool
             })
             .collect();
         let clip = clip(op, &cutters);
-        let settings = Settings {
-            trace_all: true,
-            ..mode(Mode::Exact)
-        };
+        let settings = mode(Mode::Exact).trace_all(true);
         let scene = scene(&[one]);
         let footprint =
             Footprint::<f64>::new(&scene, 0, &ViewTransform::new(view)).expect("in view");

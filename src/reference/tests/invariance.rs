@@ -1,8 +1,8 @@
 //! Changes of the input that must leave a frame the same: planes at infinity, rigid motions, cutting in two, single precision.
 
 use super::*;
-use crate::{Decay, ExactForm, Miss};
 use glam::{DQuat, Vec3 as Point};
+use rara_scene::settings::{Decay, ExactForm, Miss};
 
 /// Splats of every size and aspect, one of them about the eye.
 fn mixed(count: usize) -> Vec<One> {
@@ -22,20 +22,14 @@ fn mixed(count: usize) -> Vec<One> {
 fn every_setting() -> Vec<Settings> {
     let mut all = vec![mode(Mode::None), mode(Mode::Hard)];
     for form in [ExactForm::Auto, ExactForm::Beam, ExactForm::Affine] {
-        all.push(Settings {
-            form,
-            ..mode(Mode::Exact)
-        });
+        all.push(mode(Mode::Exact).form(form));
     }
     for miss in [Miss::Keep, Miss::Peak, Miss::Drop] {
-        all.push(Settings {
-            miss,
-            ..mode(Mode::Rara)
-        });
+        all.push(mode(Mode::Rara).miss(miss));
     }
     let laws = [None, Some(Decay::Linear), Some(Decay::Depth)];
     all.iter()
-        .flat_map(|&settings| laws.map(|decay| Settings { decay, ..settings }))
+        .flat_map(|&settings| laws.map(|decay| settings.decay(decay)))
         .collect()
 }
 
@@ -53,10 +47,7 @@ fn unchanged_by_a_plane_at_infinity<T: Real>() {
         for clip in [ClipOp::And, ClipOp::Or].map(|op| clip(op, &far)) {
             let frame = render::<T>(&scene, &camera, &clip, &settings);
             assert!(frame.picture == expected, "{settings:?}");
-            let traced = Settings {
-                trace_all: true,
-                ..settings
-            };
+            let traced = settings.trace_all(true);
             let frame = render::<T>(&scene, &camera, &clip, &traced);
             // Dropping what a ray misses is the one reading that changes a whole splat (the paper's table 2).
             let drops = settings.mode == Mode::Rara && settings.miss == Miss::Drop;
@@ -94,11 +85,9 @@ fn a_rigid_motion_of_everything_changes_nothing() {
     base.positions_mut()
         .iter_mut()
         .for_each(|p| *p = (*p * 65536.0).round() / 65536.0);
-    let view = Camera {
-        eye: step,
-        rotation: home.rotation * DMat3::from_quat(turn.inverse()),
-        ..home
-    };
+    let view = home
+        .eye(step)
+        .rotation(home.rotation * DMat3::from_quat(turn.inverse()));
     let planes = still.surfaces.iter().map(|surface| {
         let p = surface.as_plane().expect("a plane");
         let normal = turn * p.normal();
@@ -109,7 +98,7 @@ fn a_rigid_motion_of_everything_changes_nothing() {
         let a = render::<f64>(&base, &home, &still, &settings);
         let b = render::<f64>(&moved, &view, &carried, &settings);
         assert_eq!(a.counts, b.counts, "{settings:?}");
-        let result = crate::reference::differences::differences(&a.picture, &b.picture).unwrap();
+        let result = crate::differences::differences(&a.picture, &b.picture).unwrap();
         // Quaternions are rounded to f32 after the turn: 1e-7 of a needle's length.
         assert!(
             result.l1 < 1e-3 && result.share_over_2 < 1e-3,
@@ -127,7 +116,7 @@ fn the_f32_twin_agrees_with_f64() {
             render::<f64>(&scene, &camera, &clip, &settings),
             render::<f32>(&scene, &camera, &clip, &settings),
         );
-        let result = crate::reference::differences::differences(&a.picture, &b.picture).unwrap();
+        let result = crate::differences::differences(&a.picture, &b.picture).unwrap();
         assert_eq!(a.counts, b.counts);
         assert!(
             result.l1 < 2e-3 && result.share_over_2 < 1e-3,
@@ -186,8 +175,7 @@ fn speed() {
         let middle = start.elapsed();
         let twin = render::<f32>(&scene, &camera, clip, &settings);
         let end = start.elapsed() - middle;
-        let result =
-            crate::reference::differences::differences(&wide.picture, &twin.picture).unwrap();
+        let result = crate::differences::differences(&wide.picture, &twin.picture).unwrap();
         println!(
             "{:?}: f64 {middle:?}, f32 {end:?}, {:?}, {result:?}",
             settings.mode, wide.counts

@@ -2,9 +2,9 @@
 
 use super::properties::{Case, cases, directions, splats};
 use super::*;
-use crate::{Decay, Miss};
 use glam::Quat;
 use proptest::prelude::*;
+use rara_scene::settings::{Decay, Miss};
 
 /// How far two halves may be from the whole, as alpha or as weight. Doubles: rounding. Singles: each half is rounded
 /// to 6e-8 of itself, and so is what it is computed from. Where the eye is within the splat a plane's distance counts
@@ -30,10 +30,7 @@ fn flipped(planes: &[Plane]) -> Vec<Plane> {
 /// Checks that each half's alpha, the other blended behind it, is the whole's.
 fn halves_compose<T: Real>(case: &Case) -> Result<(), TestCaseError> {
     let planes = case.planes();
-    let settings = Settings {
-        decay: Some(Decay::Depth),
-        ..case.settings
-    };
+    let settings = case.settings.decay(Some(Decay::Depth));
     let (scene, view) = (scene(&[case.one]), case.view::<T>());
     let Some(whole) = project::project(&scene, 0, &view, &settings) else {
         return Ok(());
@@ -125,7 +122,7 @@ proptest! {
             prop_assert!(after >= before - 1.2e-7, "{before}, then {after}");
         }
         let rank = |case: &Case| {
-            let settings = Settings { trace_all: false, ..case.settings };
+            let settings = case.settings.trace_all(false);
             let clip = clip(case.op, &case.planes());
             match classify::classify(&scene(&[case.one]), &case.view::<f32>(), &clip, &settings)[0] {
                 Side::Culled => None,
@@ -148,7 +145,7 @@ proptest! {
     ) {
         let (step, eye) = (on_grid(step.into()), on_grid(pose.2.into()));
         let to_camera = DMat3::from_axis_angle(pose.0, pose.1);
-        let home = Camera { eye, rotation: to_camera, ..case.camera(1.0) };
+        let home = case.camera(1.0).eye(eye).rotation(to_camera);
         let position = on_grid(eye + to_camera.transpose() * Point::from(case.one.position).as_dvec3());
         let still = One { position: position.as_vec3().to_array(), rotation: Quat::IDENTITY, ..case.one };
         let quaternion = Quat::from_mat3(&turn.as_mat3());
@@ -158,7 +155,7 @@ proptest! {
             rotation: quaternion,
             ..still
         };
-        let away = Camera { eye: turn * eye + step, rotation: to_camera * turn.transpose(), ..home };
+        let away = home.eye(turn * eye + step).rotation(to_camera * turn.transpose());
 
         let planes = Case { one: still, ..case.clone() }.planes();
         let carried: Vec<_> = planes.iter().map(|p| {
@@ -191,7 +188,7 @@ proptest! {
             case.planes().iter().map(|p| Plane::new(p.normal(), p.offset() * factor).unwrap()).collect()
         };
         let other = Case { one, ..case.clone() };
-        let near = f64::from(crate::limits::NEAR_Z);
+        let near = f64::from(rara_base::limits::NEAR_Z);
         if f64::from(one.position[2]) >= near && f64::from(case.one.position[2]) >= near {
             let camera = other.camera(factor);
             let double = other.seen::<f64>(&ViewTransform::new(&camera), &scaled(factor));
@@ -286,7 +283,7 @@ fn a_picture_twice_as_large_is_another_picture_of_small_splats() {
         let footprint = Footprint::new(&scene(&[one]), 0, &view).unwrap();
         (footprint.half_sides[0] / footprint.extent).powi(2)
     };
-    let low_pass = f64::from(crate::limits::LOW_PASS);
+    let low_pass = f64::from(rara_base::limits::LOW_PASS);
     let [small, large] = [1.0, 2.0].map(variance);
     assert!((large - 4.0 * small + 3.0 * low_pass).abs() < 1e-12);
 }

@@ -15,7 +15,10 @@ mod weights;
 use glam::{DMat3, DVec3, Quat, Vec3 as Point};
 
 use super::*;
-use crate::{ClipOp, Gaussians, Mode, Plane, Projection};
+use rara_scene::Gaussians;
+use rara_scene::camera::Projection;
+use rara_scene::clip::{ClipOp, Plane};
+use rara_scene::settings::Mode;
 
 /// Y_00, the constant of the harmonics' first band.
 const Y00: f64 = 0.282_094_791_773_878_14;
@@ -33,20 +36,9 @@ fn whole(scene: &Gaussians, camera: &Camera) -> Picture {
 
 /// A camera at the origin that looks along +z, with its principal point in the middle.
 fn camera(width: u32, height: u32, focal: f64) -> Camera {
-    Camera {
-        width,
-        height,
-        fx: focal,
-        fy: focal,
-        cx: f64::from(width) / 2.0,
-        cy: f64::from(height) / 2.0,
-        eye: DVec3::ZERO,
-        rotation: DMat3::IDENTITY,
-        projection: Projection::Perspective,
-        clip_near: None,
-        clip_far: None,
-        near_cut: None,
-    }
+    let camera = Camera::look_at(DVec3::ZERO, DVec3::Z, DVec3::NEG_Y, 90.0, (width, height));
+    let camera = camera.expect("a camera").rotation(DMat3::IDENTITY);
+    camera.fx(focal).fy(focal)
 }
 
 /// A test's description of one Gaussian.
@@ -100,10 +92,7 @@ fn opposite(plane: &Plane) -> Plane {
 }
 
 fn mode(mode: Mode) -> Settings {
-    Settings {
-        mode,
-        ..Settings::default()
-    }
+    Settings::default().mode(mode)
 }
 
 /// The cut record of a scene's only Gaussian.

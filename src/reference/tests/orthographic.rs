@@ -2,7 +2,7 @@
 
 use super::truth::{STUDY, Study};
 use super::*;
-use crate::{ExactForm, Settings};
+use rara_scene::settings::{ExactForm, Settings};
 
 /// A camera before the origin, of which a unit is 25 pixels, and one in perspective `factor` times as far away that
 /// shows the plane through the origin at the same scale.
@@ -36,10 +36,7 @@ fn perspective_from_far_away_converges_to_the_orthographic_picture() {
     let scene = cloud(300);
     let cut = clip(ClipOp::And, &[plane([0.3, -0.2, 0.9], 0.1)]);
     for mode in [Mode::None, Mode::Hard, Mode::Rara, Mode::Exact] {
-        let settings = Settings {
-            mode,
-            ..Settings::default()
-        };
+        let settings = Settings::default().mode(mode);
         let [near, far] = [20.0, 2000.0].map(|factor| {
             let [flat, deep] = pair(factor);
             let [flat, deep] =
@@ -59,15 +56,13 @@ fn perspective_from_far_away_converges_to_the_orthographic_picture() {
 #[test]
 fn the_footprint_is_the_projected_covariance_wherever_the_centre_is() {
     let mut dice = Dice(41);
-    let camera = Camera {
-        fx: 11.0,
-        fy: 9.0,
-        cx: 40.0,
-        cy: 60.0,
-        eye: dice.direction(),
-        rotation: DMat3::from_quat(dice.rotation().as_dquat().normalize()),
-        ..camera(100, 80, 1.0)
-    };
+    let camera = camera(100, 80, 1.0)
+        .fx(11.0)
+        .fy(9.0)
+        .cx(40.0)
+        .cy(60.0)
+        .eye(dice.direction())
+        .rotation(DMat3::from_quat(dice.rotation().as_dquat().normalize()));
     let camera = camera.projection(Projection::Orthographic);
     let view = ViewTransform::<f64>::new(&camera);
     let mut compared = 0;
@@ -122,10 +117,7 @@ fn the_chord_of_mode_rara_runs_along_the_view_axis() {
         let [dx, dy] = footprint.conic.map(|k| dice.between(-2.0, 2.0) / k)[..2] else {
             unreachable!("a conic has three numbers");
         };
-        let settings = Settings {
-            trace_all: true,
-            ..mode(Mode::Rara)
-        };
+        let settings = mode(Mode::Rara).trace_all(true);
         let record = cut(&scene, &camera, &clip(ClipOp::And, &[cutter]), &settings);
         let weight = record.expect("every splat is traced").weight(dx, dy);
 
@@ -170,10 +162,7 @@ fn nothing_depends_on_where_along_the_axis_the_eye_stands() {
     let forward = camera.rotation.transpose().z_axis;
     let away = camera.eye(camera.eye - 50.0 * forward);
     for form in [ExactForm::Auto, ExactForm::Affine, ExactForm::Beam] {
-        let settings = Settings {
-            form,
-            ..Settings::default()
-        };
+        let settings = Settings::default().form(form);
         let [here, there] =
             [camera, away].map(|camera| render::<f64>(&scene, &camera, &cut, &settings));
         assert_eq!(here.counts, there.counts);

@@ -13,7 +13,7 @@ fn an_isotropic_splat_on_the_axis_is_a_round_gaussian() {
     let camera = camera(65, 65, 200.0);
     let picture = whole(&scene(&[one]), &camera);
     // 0.1 units at 4 units through a focal length of 200 pixels, and the low-pass.
-    let variance = 25.0_f64 + f64::from(crate::limits::LOW_PASS);
+    let variance = 25.0_f64 + f64::from(rara_base::limits::LOW_PASS);
     for y in 0..65 {
         for x in 0..65 {
             let squared = f64::from(x as i32 - 32).powi(2) + f64::from(y as i32 - 32).powi(2);
@@ -90,10 +90,7 @@ fn two_splats_composite_in_order_of_depth_over_the_background() {
     };
     let camera = camera(1, 1, 100.0);
     let pixel = |ones: &[One], background| {
-        let settings = Settings {
-            background,
-            ..Settings::default()
-        };
+        let settings = Settings::default().background(background);
         render::<f64>(&scene(ones), &camera, &NO_CLIP, &settings)
             .picture
             .at(0, 0)
@@ -183,10 +180,7 @@ fn colours_see_from_the_eye_to_the_centre_and_are_not_negative() {
     let camera = camera(1, 1, 100.0);
     let pixel = whole(&scene, &camera).at(0, 0);
     assert_close(pixel, [0.5 * (0.5 + 0.488_602_5), 0.0, 0.25, 0.5]);
-    let settings = Settings {
-        sh_degree: Some(0),
-        ..Settings::default()
-    };
+    let settings = Settings::default().sh_degree(Some(0));
     assert_close(
         render::<f64>(&scene, &camera, &NO_CLIP, &settings)
             .picture
@@ -201,15 +195,13 @@ fn the_footprint_is_the_published_ewa_projection_with_matrices() {
     let (mut clamped, mut compared) = (0, 0);
     for _ in 0..2000 {
         // A turned camera with a principal point off the middle; splats inside and outside the view.
-        let camera = Camera {
-            fx: 110.0,
-            fy: 90.0,
-            cx: 40.0,
-            cy: 60.0,
-            eye: dice.direction(),
-            rotation: DMat3::from_quat(dice.rotation().as_dquat().normalize()),
-            ..camera(100, 80, 1.0)
-        };
+        let camera = camera(100, 80, 1.0)
+            .fx(110.0)
+            .fy(90.0)
+            .cx(40.0)
+            .cy(60.0)
+            .eye(dice.direction())
+            .rotation(DMat3::from_quat(dice.rotation().as_dquat().normalize()));
         let one = dice.one(1.0, 10.0);
         let depth = dice.between(1.0, 4.0);
         let local = DVec3::new(

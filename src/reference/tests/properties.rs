@@ -1,8 +1,8 @@
 //! Properties of every splat, plane and pixel, however odd.
 
 use super::*;
-use crate::{ExactForm, Miss};
 use proptest::prelude::*;
+use rara_scene::settings::{ExactForm, Miss};
 
 /// A cut splat, a pixel and the way it is weighted.
 #[derive(Debug, Clone)]
@@ -51,23 +51,13 @@ pub(super) fn splats() -> impl Strategy<Value = One> {
 
 fn settings() -> impl Strategy<Value = Settings> {
     let exact = prop::sample::select(vec![ExactForm::Auto, ExactForm::Beam, ExactForm::Affine])
-        .prop_map(|form| Settings {
-            form,
-            ..mode(Mode::Exact)
-        });
+        .prop_map(|form| mode(Mode::Exact).form(form));
     let rara = (
         prop::sample::select(vec![Miss::Keep, Miss::Drop, Miss::Peak]),
         0.5..4.0_f32,
     )
-        .prop_map(|(miss, sigma)| Settings {
-            miss,
-            sigma,
-            ..mode(Mode::Rara)
-        });
-    prop_oneof![2 => exact, 1 => rara].prop_map(|settings| Settings {
-        trace_all: true,
-        ..settings
-    })
+        .prop_map(|(miss, sigma)| mode(Mode::Rara).miss(miss).sigma(sigma));
+    prop_oneof![2 => exact, 1 => rara].prop_map(|settings| settings.trace_all(true))
 }
 
 pub(super) fn cases(planes: impl Into<prop::collection::SizeRange>) -> impl Strategy<Value = Case> {

@@ -1,16 +1,12 @@
 //! Weights of mode `exact` by closed forms.
 
 use super::*;
-use crate::ExactForm;
+use rara_scene::settings::ExactForm;
 
 const FORMS: [ExactForm; 3] = [ExactForm::Affine, ExactForm::Beam, ExactForm::Auto];
 
 fn exact(form: ExactForm) -> Settings {
-    Settings {
-        form,
-        trace_all: true,
-        ..mode(Mode::Exact)
-    }
+    mode(Mode::Exact).form(form).trace_all(true)
 }
 
 /// The share of a Gaussian that planes keep, at an offset from its centre.
@@ -77,7 +73,7 @@ fn a_plane_across_the_view_cuts_every_ray_of_a_round_splat_alike() {
 fn a_plane_along_the_view_shows_the_low_pass() {
     // A plane that contains the view axis: given the pixel, x is normal with the mean and variance of a one-dimensional
     // Gaussian of variance s^2 seen through noise of variance L: mean s^2/(s^2 + L) dx, variance s^2 L/(s^2 + L).
-    let low_pass = f64::from(crate::limits::LOW_PASS);
+    let low_pass = f64::from(rara_base::limits::LOW_PASS);
     for pixels in [0.05_f32, 0.5, 3.0] {
         let one = One {
             scale: [pixels * 0.04; 3],
@@ -249,17 +245,13 @@ fn auto_takes_the_perspective_form_for_what_is_large_or_outside_the_picture() {
         scale: [0.01, sigma, 0.01],
         ..One::default()
     };
-    let switch = 4.0 * crate::limits::BEAM_SWITCH; // the splat is 4 away
+    let switch = 4.0 * rara_base::limits::BEAM_SWITCH; // the splat is 4 away
     assert!(is_beam(sized(1.01 * switch), &camera, ExactForm::Auto));
     assert!(!is_beam(sized(0.99 * switch), &camera, ExactForm::Auto));
     assert!(!is_beam(sized(1.0), &camera, ExactForm::Affine));
     assert!(is_beam(sized(0.001), &camera, ExactForm::Beam));
     // A long lens: the picture ends at X/Z = 0.004, the clamp at 0.0052, and the splat reaches far beyond.
-    let camera = Camera {
-        fx: 8000.0,
-        fy: 8000.0,
-        ..camera
-    };
+    let camera = camera.fx(8000.0).fy(8000.0);
     let aside = |x: f32| One {
         position: [4.0 * x, 0.0, 4.0],
         scale: [0.015; 3],

@@ -1,7 +1,7 @@
 //! How much single precision loses: the f32 twin against f64 on the same splats, planes and pixels.
 
 use super::*;
-use crate::ExactForm;
+use rara_scene::settings::ExactForm;
 
 /// A family of hard cases.
 struct Regime {
@@ -166,22 +166,11 @@ fn table(count: usize, check: impl Fn(&str, &str, f64, f64)) {
     });
     for regime in regimes().into_iter().chain(parallel) {
         for form in [ExactForm::Affine, ExactForm::Beam] {
-            let settings = Settings {
-                form,
-                trace_all: true,
-                ..mode(Mode::Exact)
-            };
+            let settings = mode(Mode::Exact).form(form).trace_all(true);
             let (max, mean) = loss(&regime, &settings, count);
             check(regime.name, &format!("{form:?}"), max, mean);
         }
-        let (max, mean) = loss(
-            &regime,
-            &Settings {
-                trace_all: true,
-                ..mode(Mode::Rara)
-            },
-            count,
-        );
+        let (max, mean) = loss(&regime, &mode(Mode::Rara).trace_all(true), count);
         check(regime.name, "Rara", max, mean);
     }
 }

@@ -2,8 +2,8 @@
 
 use super::quadrature::{Bundle, PixelRays};
 use super::*;
-use crate::ExactForm;
 use glam::DVec2;
+use rara_scene::settings::ExactForm;
 
 /// The result of a comparison of many pixels.
 #[derive(Debug, Default)]
@@ -109,11 +109,7 @@ impl Study {
                 })
                 .collect();
             let clip = clip(self.op, &planes);
-            let settings = Settings {
-                form: self.form,
-                trace_all: true,
-                ..mode(Mode::Exact)
-            };
+            let settings = mode(Mode::Exact).form(self.form).trace_all(true);
             let record = cutoff::cutoff(&scene, 0, &footprint, &view, &clip, &settings).unwrap();
             // A pixel of the footprint, by its density.
             let [k0, k1, k2] = footprint.conic;

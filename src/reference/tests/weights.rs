@@ -1,8 +1,8 @@
 //! Weights of mode `rara` against the paper's own quadratic, and the classes.
 
 use super::*;
-use crate::{ExactForm, Miss, Settings};
 use glam::DMat3;
+use rara_scene::settings::{ExactForm, Miss, Settings};
 
 /// The paper's Algorithm 1 as it stands, for one plane, in f64: intersect, compare, divide. Nothing where there are not
 /// two intersections in front of the eye.
@@ -48,12 +48,7 @@ fn quadratic(
 }
 
 fn traced(miss: Miss, sigma: f32) -> Settings {
-    Settings {
-        miss,
-        sigma,
-        trace_all: true,
-        ..mode(Mode::Rara)
-    }
+    mode(Mode::Rara).miss(miss).sigma(sigma).trace_all(true)
 }
 
 #[test]
@@ -144,13 +139,7 @@ fn flat_and_needle_splats_have_weights() {
             scale,
             ..One::default()
         };
-        for settings in [
-            traced(Miss::Peak, 3.0),
-            Settings {
-                trace_all: true,
-                ..mode(Mode::Exact)
-            },
-        ] {
+        for settings in [traced(Miss::Peak, 3.0), mode(Mode::Exact).trace_all(true)] {
             let cut = cut(
                 &scene(&[one]),
                 &camera,
@@ -186,10 +175,7 @@ fn classes_follow_the_splats_extent_along_the_normal() {
     use ClipOp::{And, Or};
     use Side::{Cutoff, Invisible, Visible};
     let exact = mode(Mode::Exact);
-    let affine = Settings {
-        form: ExactForm::Affine,
-        ..exact
-    };
+    let affine = exact.form(ExactForm::Affine);
     let reach = (2.0 * 255.0_f64.ln()).sqrt();
     // True rays: a deviation is a fortieth of the depth.
     let wider = reach / (1.0 - reach * f64::from(0.1_f32) / 4.0);
@@ -219,10 +205,7 @@ fn classes_follow_the_splats_extent_along_the_normal() {
         );
     }
     // A traced ellipsoid larger than the footprint widens the band, a smaller one does not narrow it.
-    let rara = |sigma| Settings {
-        sigma,
-        ..mode(Mode::Rara)
-    };
+    let rara = |sigma| mode(Mode::Rara).sigma(sigma);
     assert_eq!(class(And, &[4.0], &rara(5.0)), Cutoff);
     assert_eq!(class(And, &[4.0], &rara(1.0)), Visible);
     assert_eq!(class(And, &[3.0], &rara(1.0)), Cutoff);
@@ -230,28 +213,8 @@ fn classes_follow_the_splats_extent_along_the_normal() {
     assert_eq!(class(And, &[0.1, -0.1], &mode(Mode::Hard)), Invisible);
     assert_eq!(class(Or, &[0.1, -0.1], &mode(Mode::Hard)), Visible);
     assert_eq!(class(And, &[-9.0], &mode(Mode::None)), Visible);
-    assert_eq!(
-        class(
-            And,
-            &[9.0],
-            &Settings {
-                trace_all: true,
-                ..exact
-            }
-        ),
-        Cutoff
-    );
-    assert_eq!(
-        class(
-            And,
-            &[],
-            &Settings {
-                trace_all: true,
-                ..exact
-            }
-        ),
-        Visible
-    );
+    assert_eq!(class(And, &[9.0], &exact.trace_all(true)), Cutoff);
+    assert_eq!(class(And, &[], &exact.trace_all(true)), Visible);
 }
 
 #[test]
@@ -263,10 +226,7 @@ fn the_plane_distance_holds_far_from_the_origin() {
         scale: [0.125; 3],
         ..One::default()
     };
-    let camera = Camera {
-        eye: offset,
-        ..camera(64, 64, 100.0)
-    };
+    let camera = camera(64, 64, 100.0).eye(offset);
     let cutter = plane([0.0, 0.0, 1.0], -(1e6 + 4.0) + 0.0625);
     let view = ViewTransform::<f32>::new(&camera);
     let scene = scene(&[one]);

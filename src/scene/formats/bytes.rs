@@ -1,6 +1,6 @@
 //! The bytes of a file, taken from the front; nothing is taken that is not there.
 
-use crate::counted::counted;
+use rara_base::counted::counted;
 
 /// What is left of a file, or of a part of one.
 #[derive(Debug, Clone, Copy)]

@@ -6,7 +6,7 @@ use flate2::bufread::{DeflateDecoder, GzDecoder};
 use ruzstd::decoding::StreamingDecoder;
 
 use super::Failure;
-use crate::counted::counted;
+use rara_base::counted::counted;
 
 /// No stream of deflate becomes larger than this many times itself.
 const MOST_DEFLATE: u64 = 1040;
@@ -45,7 +45,7 @@ fn failed(what: &str, error: &io::Error) -> Failure {
 }
 
 fn damaged(what: &str, error: &dyn std::fmt::Display) -> Failure {
-    let error = crate::error::shortened(&error.to_string());
+    let error = rara_base::error::shortened(&error.to_string());
     Failure::Format(format!(
         "its {what} stream is damaged ({error}); get the file again"
     ))

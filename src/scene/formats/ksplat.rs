@@ -4,7 +4,7 @@ use super::super::assemble::{ColumnForm, OPACITY, SCALES, SH, SLOTS};
 use super::super::sh_coefficients;
 use super::bytes::{Bytes, f16_at, f32_at, u16_at};
 use super::{Failure, FormatOutput, colour, room};
-use crate::counted::counted;
+use rara_base::counted::counted;
 
 /// Bytes of the file's header, and of each section's.
 const HEADER: u64 = 4096;

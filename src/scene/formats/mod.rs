@@ -17,9 +17,9 @@ pub(super) use self::write::WRITERS;
 use super::assemble::{Assembler, ColumnForm};
 use super::load::{Input, Progress};
 use super::{Format, Gaussians, LoadReport, Loaded, Property, SH_0};
-use crate::counted::counted;
-use crate::error::{Error, Result};
 use crate::placement::Placement;
+use rara_base::counted::counted;
+use rara_base::error::{Error, Result};
 
 /// Why nothing was read.
 enum Failure {
@@ -225,7 +225,7 @@ pub(super) fn read(
             name,
             format!(
                 "a {format} file has no property `{}` beside what a Gaussian is made of; only 3DGS .ply files have such",
-                crate::error::shortened(property)
+                rara_base::error::shortened(property)
             ),
         ));
     }
@@ -273,7 +273,7 @@ fn json(bytes: &[u8]) -> std::result::Result<serde_json::Value, String> {
 
 /// A file beside the scene's, whose name stands in it: within its folder, and a name that cannot lead out.
 fn beside(name: &str, folder: Option<&Path>) -> std::result::Result<Vec<u8>, Failure> {
-    let quoted = crate::error::shortened(name);
+    let quoted = rara_base::error::shortened(name);
     let folder = folder.ok_or_else(|| {
         format!("it needs the file \"{quoted}\" beside it; load it by its path, not from memory")
     })?;

@@ -5,7 +5,7 @@ use super::super::assemble::{ColumnForm, OPACITY, ROTATION, SCALES, SH, SLOTS, u
 use super::bytes::{Bytes, f16_at};
 use super::inflate::{self, Gzip};
 use super::{Failure, FormatOutput, room};
-use crate::counted::counted;
+use rara_base::counted::counted;
 
 const MAGIC: &[u8; 4] = b"NGSP";
 /// Bytes of the header that all versions have, and of version 4's.

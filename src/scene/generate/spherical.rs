@@ -68,7 +68,7 @@ fn basis(d: DVec3) -> [f64; COEFFICIENTS] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::generate::Random;
+    use crate::generate::Random;
 
     fn evaluate(colours: &Colours, d: DVec3) -> DVec3 {
         colours

@@ -6,9 +6,9 @@ use super::Progress;
 use super::binary::Failure;
 use super::header::PlyHeader;
 use super::layout::{Field, Layout};
-use crate::counted::counted;
-use crate::error::shortened;
-use crate::scene::assemble::{Assembler, GaussianRow};
+use crate::assemble::{Assembler, GaussianRow};
+use rara_base::counted::counted;
+use rara_base::error::shortened;
 
 /// A Gaussian takes about 1 kB; a longer line than this is not text at all.
 const MAX_LINE: u64 = 4 << 20;

@@ -8,7 +8,7 @@ use super::Progress;
 use super::header::PlyHeader;
 use super::layout::{Field, Layout, fixed_size};
 use super::number::Number;
-use crate::scene::assemble::Assembler;
+use crate::assemble::Assembler;
 
 /// Bytes read at once. A larger chunk gains nothing, a smaller one costs system calls.
 const CHUNK: usize = 4 << 20;

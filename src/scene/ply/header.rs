@@ -9,7 +9,7 @@ use ply_rs::parser::{Parser, Reader};
 use ply_rs::ply::{DefaultElement, ElementDef, Encoding, PropertyType, ScalarType};
 
 use super::trained::TrainerKind;
-use crate::error::shortened;
+use rara_base::error::shortened;
 
 /// Headers of real files are below 5 kB; this leaves room for long comments. No more is read before the header is known.
 pub(super) const MAX_BYTES: usize = 1 << 20;

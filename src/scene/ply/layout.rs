@@ -5,10 +5,10 @@ use ply_rs::ply::{ElementDef, Encoding, PropertyType};
 use super::header::PlyHeader;
 use super::number::Number;
 use super::trained::{self, FILTER};
-use crate::counted::counted;
-use crate::error::shortened;
-use crate::scene::Property;
-use crate::scene::assemble::{FIXED, SH, SLOTS};
+use crate::Property;
+use crate::assemble::{FIXED, SH, SLOTS};
+use rara_base::counted::counted;
+use rara_base::error::shortened;
 
 /// One declared property of the Gaussians, in file order.
 #[derive(Debug, Clone, Copy)]

@@ -19,8 +19,8 @@ use self::trained::TrainerKind;
 use super::assemble::Assembler;
 use super::load::{Input, Loaded, Progress};
 use super::{Format, Property};
-use crate::counted::counted;
-use crate::error::{Error, Result};
+use rara_base::counted::counted;
+use rara_base::error::{Error, Result};
 
 /// Reads 3DGS `.ply` files, compressed ones too.
 pub(super) fn read(
@@ -54,7 +54,7 @@ pub(super) fn read(
             return Err(format(format!(
                 "a compressed PLY has no property `{}` beside what a Gaussian is made of; only plain 3DGS .ply files have \
                  such",
-                crate::error::shortened(property)
+                rara_base::error::shortened(property)
             )));
         }
         if header.kind == Some(TrainerKind::Discs) {

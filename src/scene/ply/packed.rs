@@ -6,12 +6,12 @@ use ply_rs::ply::{ElementDef, Encoding};
 
 use super::header::PlyHeader;
 use super::layout::{Field, fixed_size};
-use crate::counted::counted;
-use crate::scene::SH_0;
-use crate::scene::assemble::{
+use crate::SH_0;
+use crate::assemble::{
     Assembler, ColumnForm, OPACITY, ROTATION, SCALES, SH, SLOTS, unit_quaternion,
 };
-use crate::scene::load::{Progress, Source};
+use crate::load::{Progress, Source};
+use rara_base::counted::counted;
 
 /// Gaussians in a chunk.
 const CHUNK: usize = 256;

@@ -3,7 +3,7 @@
 
 use ply_rs::ply::{ElementDef, PropertyType};
 
-use crate::scene::Gaussians;
+use crate::Gaussians;
 
 /// The property in which Mip-Splatting and its descendants leave a deviation that each Gaussian has in all directions beside
 /// its scales: the finest detail that the training pictures show of it.

@@ -3,33 +3,15 @@
 use glam::{DVec3, Quat, Vec3};
 
 use super::Headless;
-use crate::camera::{Camera, Projection};
-use crate::clip::Clip;
-use crate::error::Result;
 use crate::passes::SceneBuffers;
-use crate::picture::{Channel, Picture};
-use crate::placement::Placement;
-use crate::precision::{ShFormat, TargetFormat};
-use crate::scene::{Gaussians, Layer, Scene};
-use crate::settings::{Settings, Show};
-
-/// A quantity that a pixel can have beside its colour.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
-#[non_exhaustive]
-pub enum Aov {
-    /// Channel Z: the mean depth of what is left, along the view axis, world units; 0 where nothing is
-    Depth,
-    /// Channels N.X, N.Y, N.Z: the mean direction of the splats' thinnest axes, turned to the eye, in the world, of length one;
-    /// 0 where nothing is
-    Normal,
-    /// Channel layer: the number of the layer, from 0, whose splats add most to alpha; -1 where nothing is
-    Layer,
-    /// Channel weight: the mean share that the clip leaves of the splats, 1 where it cuts none; 0 where nothing is
-    Weight,
-    /// Channel count: how many splats make the pixel, until it is saturated
-    Count,
-}
+use rara_base::error::Result;
+use rara_scene::camera::{Camera, Projection};
+use rara_scene::clip::Clip;
+use rara_scene::picture::{Aov, Channel, Picture};
+use rara_scene::placement::Placement;
+use rara_scene::precision::{ShFormat, TargetFormat};
+use rara_scene::settings::{Settings, Show};
+use rara_scene::{Gaussians, Layer, Scene};
 
 /// The constant spherical harmonic.
 const SH_0: f32 = 0.282_094_8;
@@ -99,7 +81,7 @@ impl Headless {
     ) -> Result<Picture> {
         let settings = settings.show(show);
         let settings = match show.needs_tiles() {
-            true => settings.raster(crate::settings::Raster::Auto),
+            true => settings.raster(rara_scene::settings::Raster::Auto),
             false => settings,
         };
         self.render(camera, clip, &settings)?;

@@ -1,14 +1,14 @@
 //! How deep a frame's pixels are, drawn by themselves.
 
 use super::super::loaded;
-use super::super::target::blendable_on;
+use super::super::target::{blendable_on, vulkan_format};
 use super::Headless;
-use crate::camera::Camera;
-use crate::clip::Clip;
-use crate::error::{Error, Result};
-use crate::gpu::{BufferDesc, Drawer, ImageDesc, Location};
-use crate::precision::TargetFormat;
-use crate::settings::{Raster, Settings, Show};
+use rara_base::error::{Error, Result};
+use rara_gpu::{BufferDesc, Drawer, ImageDesc, Location};
+use rara_scene::camera::Camera;
+use rara_scene::clip::Clip;
+use rara_scene::precision::TargetFormat;
+use rara_scene::settings::{Raster, Settings, Show};
 
 impl Headless {
     /// Draws the expected depth of each pixel, row by row from the top left: the mean depth along the view axis, world
@@ -38,7 +38,9 @@ impl Headless {
         let session = &self.session;
         let (device, scene) = (&session.device, loaded(&session.scene, "draw depths of")?);
         let format = blendable_on(device, TargetFormat::Float)?;
-        let mut renderer = session.renderer.with_expected_depth(format.vulkan())?;
+        let mut renderer = session
+            .renderer
+            .with_expected_depth(vulkan_format(format))?;
         // Depths are drawn as quads in any case, and lists of tiles could lack room. They are the same whatever a picture
         // shows, of which some is made by tiles alone.
         let drawn = settings.raster(Raster::Quad).show(Show::Colour);
@@ -47,7 +49,7 @@ impl Headless {
             name: "expected depth",
             width: camera.width,
             height: camera.height,
-            format: format.vulkan(),
+            format: vulkan_format(format),
         })?;
         let size = u64::from(camera.width) * u64::from(camera.height) * format.pixel_bytes();
         let readback = device.create_buffer(&BufferDesc {

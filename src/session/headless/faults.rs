@@ -2,13 +2,13 @@
 //! do, and leaves nothing behind: no memory, no object, and no message of the validation layer.
 
 use super::*;
-use crate::clip::{ClipOp, Plane};
-use crate::gpu::faults::{self, CAN_BE_LOST, Fault, Pretence};
-use crate::gpu::{Bindings, PipelineCache};
-use crate::scene::{Bounds, Kind, generate};
-use crate::settings::Raster;
 use ash::vk::{self, Result as Code};
 use glam::DVec3;
+use rara_gpu::faults::{self, CAN_BE_LOST, Fault, Pretence};
+use rara_gpu::{Bindings, PipelineCache};
+use rara_scene::clip::{ClipOp, Plane};
+use rara_scene::settings::Raster;
+use rara_scene::{Bounds, Kind, generate};
 
 /// A scene, a frame of it from nothing, reclipped frames, and pictures of the first and the last. The one in between has a
 /// background, so that there is a draw in any case.
@@ -17,11 +17,7 @@ fn life(headless: &mut Headless, raster: Raster) -> Result<[Picture; 2]> {
     let camera = Camera::frame(&Bounds::of(&scene), -DVec3::Y, 50.0, (24, 16))?;
     let draw = |headless: &mut Headless, offset, background| {
         let clip = Clip::of([Plane::new(DVec3::X, offset)?], ClipOp::And);
-        let settings = Settings {
-            raster,
-            background,
-            ..Settings::default()
-        };
+        let settings = Settings::default().raster(raster).background(background);
         headless.render(&camera, &clip, &settings).map(drop)
     };
     headless.load(&scene)?;
@@ -258,7 +254,7 @@ fn without_any_extension_a_frame_is_drawn_all_the_same() {
     let [tiles, quads] = [Raster::Tiles, Raster::Quad]
         .map(|raster| life(&mut headless, raster).expect("renders")[0].clone());
     let difference =
-        crate::reference::differences::differences(&tiles, &quads).expect("the same size");
+        rara_reference::differences::differences(&tiles, &quads).expect("the same size");
     assert!(difference.psnr > 60.0, "{difference:?}");
     let error = life(&mut headless, Raster::Mesh).expect_err("there are none");
     assert!(error.to_string().contains("VK_EXT_mesh_shader"), "{error}");
@@ -287,10 +283,7 @@ fn every_object_has_a_name_and_every_command_a_label() {
                 [Plane::new(DVec3::X, offset).expect("a plane")],
                 ClipOp::And,
             );
-            let settings = Settings {
-                raster,
-                ..Settings::default()
-            };
+            let settings = Settings::default().raster(raster);
             let stats = headless.render(&camera.expect("a view"), &clip, &settings);
             timed.extend(stats.expect("renders").passes.iter().map(|pass| pass.name));
         }

@@ -5,11 +5,11 @@ use ash::vk;
 use super::super::loaded;
 use super::super::no_room;
 use super::Headless;
-use crate::camera::Camera;
-use crate::clip::Clip;
-use crate::error::{Error, Result};
 use crate::renderer::{Picker, Picks};
-use crate::settings::{Settings, Show};
+use rara_base::error::{Error, Result};
+use rara_scene::camera::Camera;
+use rara_scene::clip::Clip;
+use rara_scene::settings::{Settings, Show};
 
 /// Room for the tiles' lists is known to suffice, or not to be had, after so many requests.
 const TRIES: u32 = 8;

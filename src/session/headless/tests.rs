@@ -1,13 +1,13 @@
 //! Tests that look inside, through seams that only they have.
 
 use super::*;
-use crate::clip::{ClipOp, Plane};
-use crate::gpu::{Bindings, faults};
-use crate::limits;
-use crate::scene::{Bounds, Gaussians, Kind, Random, extent_along, generate};
-use crate::settings::{ExactForm, Mode, Raster, Show};
 use ash::vk;
 use glam::{DVec3, Vec3};
+use rara_base::limits;
+use rara_gpu::{Bindings, faults};
+use rara_scene::clip::{ClipOp, Plane};
+use rara_scene::settings::{ExactForm, Mode, Raster, Show};
+use rara_scene::{Bounds, Gaussians, Kind, Random, extent_along, generate};
 
 fn headless() -> Headless {
     let desc = HeadlessDesc {
@@ -34,10 +34,7 @@ fn what_tiles_never_have_room_for_is_drawn_as_quads() {
             ClipOp::And,
         );
         let draw = |headless: &mut Headless, raster| {
-            let settings = Settings {
-                raster,
-                ..Settings::default()
-            };
+            let settings = Settings::default().raster(raster);
             let stats = headless.render(&camera, &clip, &settings).expect("renders");
             (stats.raster.path, headless.picture().expect("reads back"))
         };
@@ -180,10 +177,7 @@ fn views_of_blocks(bounds: &Bounds) -> Vec<Camera> {
 /// The same view with a point this many pixels right of the picture's left edge, where blocks come into view.
 fn at_the_edge(camera: Camera, point: Vec3, pixels: f64) -> Camera {
     let seen = camera.rotation * (point.as_dvec3() - camera.eye);
-    Camera {
-        cx: pixels - camera.fx * seen.x / seen.z,
-        ..camera
-    }
+    camera.cx(pixels - camera.fx * seen.x / seen.z)
 }
 
 /// Blocks that are settled as a whole give the same counts and the same bytes as their Gaussians looked at one by one.
@@ -207,13 +201,11 @@ fn blocks_change_nothing() {
                     at_the_edge(views[pick(2)], point, -2.0 + 0.5 * pick(9) as f64)
                 }
             };
-            let mut settings = Settings {
-                mode: [Mode::Hard, Mode::Rara, Mode::Exact, Mode::Exact][pick(4)],
-                form: [ExactForm::Auto, ExactForm::Beam, ExactForm::Affine][pick(3)],
-                raster: [Raster::Tiles, Raster::Quad][pick(2)],
-                trace_all: pick(8) == 0,
-                ..Settings::default()
-            };
+            let mut settings = Settings::default()
+                .mode([Mode::Hard, Mode::Rara, Mode::Exact, Mode::Exact][pick(4)])
+                .form([ExactForm::Auto, ExactForm::Beam, ExactForm::Affine][pick(3)])
+                .raster([Raster::Tiles, Raster::Quad][pick(2)])
+                .trace_all(pick(8) == 0);
             settings.precision.beam_switch = [0.0, 0.005, 0.05][pick(3)];
             let normals = [
                 DVec3::X,
@@ -365,12 +357,10 @@ fn subgroups_that_load_splats_together_change_nothing() {
                     planes.map(|&n| Plane::new(n, d).expect("a finite normal")),
                     op,
                 );
-                let settings = Settings {
-                    mode,
-                    show,
-                    raster: Raster::Tiles,
-                    ..Settings::default()
-                };
+                let settings = Settings::default()
+                    .mode(mode)
+                    .show(show)
+                    .raster(Raster::Tiles);
                 headless.render(camera, &clip, &settings).expect("renders");
                 pictures.push(headless.picture().expect("reads back"));
             }

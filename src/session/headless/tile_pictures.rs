@@ -2,11 +2,11 @@
 //! into a cleared target, from frame to frame.
 
 use super::*;
-use crate::clip::{ClipOp, Plane};
-use crate::gpu::{Bindings, DeviceShape};
-use crate::scene::{Bounds, Kind, Layer, generate};
-use crate::settings::{Mode, Raster, Show};
 use glam::DVec3;
+use rara_gpu::{Bindings, DeviceShape};
+use rara_scene::clip::{ClipOp, Plane};
+use rara_scene::settings::{Mode, Raster, Show};
+use rara_scene::{Bounds, Kind, Layer, generate};
 
 /// The formats in which tiles leave the picture.
 const FORMATS: [TargetFormat; 2] = [TargetFormat::Unorm8, TargetFormat::Float];
@@ -112,10 +112,7 @@ fn bytes(headless: &Headless, name: &str) -> u64 {
 }
 
 fn tiles(format: TargetFormat) -> Settings {
-    let mut settings = Settings {
-        raster: Raster::Tiles,
-        ..Settings::default()
-    };
+    let mut settings = Settings::default().raster(Raster::Tiles);
     settings.precision.target = format;
     settings
 }
@@ -150,10 +147,7 @@ fn frames_that_follow_each_other_are_left_as_they_are_drawn() {
             pair.leave(SIZE, 0.25, &settings);
             pair.leave(SIZE, 0.3, &settings);
         }
-        let weights = Settings {
-            show: Show::Weight,
-            ..settings
-        };
+        let weights = settings.show(Show::Weight);
         pair.leave(SIZE, 0.3, &weights);
         // All of it is clipped away, and comes back.
         for offset in [-1e3, 0.3] {
@@ -168,14 +162,8 @@ fn frames_that_have_to_be_drawn_come_in_between() {
     let mut pair = Pair::new(None);
     for format in FORMATS {
         let settings = tiles(format);
-        let quads = Settings {
-            raster: Raster::Quad,
-            ..settings
-        };
-        let red = Settings {
-            background: Some([0.5, 0.1, 0.0]),
-            ..settings
-        };
+        let quads = settings.raster(Raster::Quad);
+        let red = settings.background(Some([0.5, 0.1, 0.0]));
         for between in [quads, red] {
             for offset in [0.0, 0.1] {
                 pair.leave(SIZE, offset, &settings);
@@ -194,10 +182,7 @@ fn frames_that_have_to_be_drawn_come_in_between() {
     }
     // Floats that are the picture are blended onto a background without being computed again.
     let settings = tiles(TargetFormat::Float);
-    let red = Settings {
-        background: Some([0.5, 0.1, 0.0]),
-        ..settings
-    };
+    let red = settings.background(Some([0.5, 0.1, 0.0]));
     pair.leave(SIZE, 0.0, &settings);
     let stats = pair.draw(SIZE, 0.0, &red);
     assert!(stats.skipped.contains(&"tiles") && !stats.skipped.contains(&"splat"));
@@ -247,11 +232,7 @@ fn a_frame_that_is_refused_leaves_the_picture_before_it() {
     pair.leave(SIZE, 0.0, &settings);
     let picture = pair.leaves.picture().expect("reads back");
     let camera = Camera::frame(&pair.bounds, -DVec3::Y, 50.0, (300, 200)).expect("a view");
-    let refused = Settings {
-        sigma: f32::NAN,
-        mode: Mode::Rara,
-        ..settings
-    };
+    let refused = settings.sigma(f32::NAN).mode(Mode::Rara);
     let plane = Plane::new(DVec3::X, 0.0).expect("a finite normal");
     let clip = Clip::of([plane], ClipOp::And);
     let error = pair.leaves.render(&camera, &clip, &refused);

@@ -1,7 +1,7 @@
 //! What tests need beside pictures: the contents that stages have written, and a second renderer that compiles nothing again.
 
 use super::Headless;
-use crate::error::Result;
+use rara_base::error::Result;
 
 impl Headless {
     /// Another one on the same device, without a scene, that shares the compiled pipelines and nothing else. This is for tests

@@ -4,9 +4,9 @@ use std::cell::Cell;
 
 use super::*;
 use crate::results::assert_fails;
-use rara::gpu::{Buffer, BufferDesc, Location};
 use rara_c::boundary::*;
 use rara_c::staging::*;
+use rara_gpu::{Buffer, BufferDesc, Location};
 
 /// # Safety
 /// As for `rara_scene_buffers_upload_with`.

@@ -202,7 +202,7 @@ impl Canvas {
         ];
         let buffer = |name| {
             let location = rara::gpu::Location::Readback;
-            let desc = rara::gpu::BufferDesc {
+            let desc = rara_gpu::BufferDesc {
                 name,
                 size: pixels * 16,
                 location,
@@ -216,7 +216,7 @@ impl Canvas {
             Ok(())
         });
         submitted.expect("submits");
-        let read = |(image, buffer): (&Option<&Image>, &rara::gpu::Buffer)| {
+        let read = |(image, buffer): (&Option<&Image>, &rara_gpu::Buffer)| {
             let image = image.as_ref();
             image.map_or(Vec::new(), |i| {
                 decoded(i.format, buffer.mapped(), pixels as usize)
@@ -233,7 +233,7 @@ impl Canvas {
         cmd: vk::CommandBuffer,
         scopes: &mut [Scope<'_>],
         colors: &[Option<&Image>; 2],
-        readbacks: &[rara::gpu::Buffer; 2],
+        readbacks: &[rara_gpu::Buffer; 2],
     ) {
         let undefined = vk::ImageLayout::UNDEFINED;
         let drawn = [

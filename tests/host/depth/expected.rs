@@ -4,7 +4,7 @@ use super::*;
 use crate::canvas::with_host;
 use rara::glam::{DQuat, DVec3};
 use rara::gpu::Bindings;
-use rara::{ExpectedDepthDesc, Mode, Placement, reference};
+use rara::{ExpectedDepthDesc, Mode, Placement};
 
 const FORMAT: vk::Format = vk::Format::R32G32_SFLOAT;
 
@@ -59,8 +59,12 @@ fn expected_depths_are_the_references() {
         ] {
             let clip = common::clip(&world.scene, planes, op);
             let settings = Settings::default().mode(mode);
-            let truth =
-                reference::depth::expected::<f64>(&world.scene, &world.camera, &clip, &settings);
+            let truth = rara_reference::depth::expected::<f64>(
+                &world.scene,
+                &world.camera,
+                &clip,
+                &settings,
+            );
             for (raster, bindings) in [
                 (Raster::Tiles, Bindings::Bound),
                 (Raster::Quad, Bindings::Address),
@@ -154,7 +158,7 @@ fn expected_depths_are_behind_the_cut_and_before_the_mesh() {
         let depths = part(&pixels);
         let (rect, mesh) = world.meshes[1];
         let middle = (rect.offset.y + 20) as u32 * VIEW.0 + rect.offset.x as u32 + 60;
-        let whole = reference::depth::expected::<f64>(
+        let whole = rara_reference::depth::expected::<f64>(
             &world.before(mesh),
             &world.camera,
             &clip,

@@ -63,7 +63,7 @@ fn a_first_frame_of_tiles_has_room_and_those_after_it_keep_it() {
     let mut scene = generate(Kind::General, 1_000, 5);
     enlarge(&mut scene, 0..1_000);
     let (camera, clip, settings) = frames(&scene).swap_remove(1);
-    let truth = rara::reference::render::<f64>(&scene, &camera, &clip, &settings).picture;
+    let truth = rara_reference::render::<f64>(&scene, &camera, &clip, &settings).picture;
     let desc = in_flight(FLOATS, Bindings::Mixed);
     let host = open_host(FLOATS, VIEW, true);
     let mut engine = Engine::new(host, &scene, ShFormat::default(), desc);
@@ -99,7 +99,7 @@ fn a_frame_without_room_for_its_tiles_is_drawn_as_quads() {
     scene.opacities_mut().fill(0.01);
     enlarge(&mut scene, (0..2_100).filter(|index| index % 3 != 0));
     let (camera, clip, settings) = frames(&scene).swap_remove(1);
-    let truth = rara::reference::render::<f64>(&scene, &camera, &clip, &settings).picture;
+    let truth = rara_reference::render::<f64>(&scene, &camera, &clip, &settings).picture;
     let desc = in_flight(FLOATS, Bindings::Mixed);
     let host = open_host(FLOATS, VIEW, true);
     let mut engine = Engine::new(host, &scene, ShFormat::default(), desc);

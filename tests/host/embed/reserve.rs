@@ -248,7 +248,7 @@ fn a_budget_without_room_for_all_pairs_draws_quads() {
     scene.scales_mut().fill(rara::glam::Vec3::splat(2.0));
     scene.opacities_mut().fill(0.02);
     let (camera, clip, settings) = frames(&scene).swap_remove(1);
-    let truth = rara::reference::render::<f64>(&scene, &camera, &clip, &settings).picture;
+    let truth = rara_reference::render::<f64>(&scene, &camera, &clip, &settings).picture;
     let desc = in_flight(FLOATS, Bindings::Mixed);
     let host = open_host(FLOATS, VIEW, true);
     let mut engine = Engine::new(host, &scene, ShFormat::default(), desc);

@@ -7,7 +7,7 @@ mod memory;
 mod recording;
 
 use ash::vk;
-use rara::gpu::*;
+use rara_gpu::*;
 
 /// A committed SPIR-V file as words.
 macro_rules! spirv {

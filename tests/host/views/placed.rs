@@ -2,7 +2,7 @@
 
 use super::*;
 use rara::glam::DQuat;
-use rara::{DepthDesc, DepthMap, Placement, Plane, reference};
+use rara::{DepthDesc, DepthMap, Placement, Plane};
 
 /// A scene's Gaussians where a placement puts them, their spherical harmonics turned with them.
 fn placed(scene: &Gaussians, placement: &Placement) -> Gaussians {
@@ -37,7 +37,7 @@ const BASIS: usize = 16;
 /// The matrix that turns coefficients of spherical harmonics: a turned function in the direction `d` is the function in
 /// the direction of `d` turned back, whatever the basis. It is found by least squares over many directions.
 fn harmonics_turned(rotation: DQuat) -> [[f64; BASIS]; BASIS] {
-    let basis = |d: DVec3| reference::harmonics::basis(reference::vec3(d.x, d.y, d.z));
+    let basis = |d: DVec3| rara_reference::harmonics::basis(rara_reference::vec3(d.x, d.y, d.z));
     // Columns: the matrix of the normal equations, then their right sides.
     let mut rows = [[0.0; 2 * BASIS]; BASIS];
     for i in 0..400 {

@@ -2,7 +2,6 @@
 
 use super::*;
 use rara::clip::Expression;
-use rara::reference;
 use rara::scene::Bounds;
 
 #[test]
@@ -62,7 +61,7 @@ fn layers_of_different_degrees_keep_their_colours() {
     let layers = named(parts.iter().map(|part| (part, LayerState::default())));
     let camera = common::views(&scene, 1, common::scaled((125, 95)))[0];
     let (clip, settings) = (Clip::default(), Settings::default());
-    let truth = reference::render::<f64>(&layers, &camera, &clip, &settings).picture;
+    let truth = rara_reference::render::<f64>(&layers, &camera, &clip, &settings).picture;
     let mut headless = common::headless();
     for (format, least) in [
         (rara::ShFormat::Float, 60.0),
@@ -193,6 +192,7 @@ fn layers_far_apart_are_cut_alike() {
         alone == behind,
         "the near layer is not in view, and changes nothing"
     );
-    let truth = reference::render::<f64>(&Scene::from(&far), &camera, &clip, &Settings::default());
+    let truth =
+        rara_reference::render::<f64>(&Scene::from(&far), &camera, &clip, &Settings::default());
     common::assert_agrees("far away", &behind, &truth.picture);
 }

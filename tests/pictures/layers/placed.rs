@@ -1,7 +1,6 @@
 //! Layers in their places, with their colours, opacities and clips.
 
 use super::*;
-use rara::reference;
 
 /// The truth knows nothing of layers: it draws Gaussians that were moved, turned, scaled and faded one by one.
 #[test]
@@ -41,8 +40,8 @@ fn a_placed_layer_is_its_gaussians_placed() {
                 common::check(&mut headless, "placed", &moved, &camera, &clip, &settings);
             }
             let settings = Settings::default().mode(mode);
-            let truth = reference::render::<f64>(&moved, &camera, &clip, &settings);
-            let twin = reference::render::<f64>(layers.clone(), &camera, &clip, &settings);
+            let truth = rara_reference::render::<f64>(&moved, &camera, &clip, &settings);
+            let twin = rara_reference::render::<f64>(layers.clone(), &camera, &clip, &settings);
             common::assert_agrees("the twin", &twin.picture, &truth.picture);
         }
     }
@@ -127,7 +126,8 @@ fn each_layer_may_have_a_clip_of_its_own() {
         let settings = Settings::default().mode(mode);
         let drawn = headless.render(&camera, &Clip::default(), &settings);
         assert!(drawn.expect("renders").counts.cutoff > 50);
-        let truth = reference::render::<f64>(layers(&moved), &camera, &Clip::default(), &settings);
+        let truth =
+            rara_reference::render::<f64>(layers(&moved), &camera, &Clip::default(), &settings);
         common::assert_agrees("own clips", &picture(&mut headless), &truth.picture);
     }
     headless.close().expect("nothing to say");

@@ -1,9 +1,9 @@
 //! A selection divides a set of Gaussians into layers, and no picture shows it, however many are equally deep.
 
 use super::*;
+use rara::Preset;
 use rara::gpu::{Bindings, DeviceShape};
 use rara::scene::{Part, Predicate};
-use rara::{Preset, reference};
 
 /// A scene in which hundreds of Gaussians share each depth, seen from `camera`.
 fn in_sheets() -> (Gaussians, rara::Camera) {
@@ -117,10 +117,11 @@ fn every_file_can_be_divided() {
 
     // The twin has the same order.
     let drawn =
-        |scene: &Scene<'_>| reference::render::<f32>(scene, &camera, &clip, &settings).picture;
+        |scene: &Scene<'_>| rara_reference::render::<f32>(scene, &camera, &clip, &settings).picture;
     assert!(drawn(&all) == drawn(&layers));
-    let depths =
-        |scene: &Scene<'_>| reference::depth::expected::<f32>(scene, &camera, &clip, &settings);
+    let depths = |scene: &Scene<'_>| {
+        rara_reference::depth::expected::<f32>(scene, &camera, &clip, &settings)
+    };
     assert!(depths(&all) == depths(&layers));
 
     let missing = Scene::from_iter([of(0, 0), of(1, 0), of(1, 1)]);

@@ -4,7 +4,7 @@
 
 use glam::{DMat4, DQuat, DVec3, Quat, Vec3, Vec4};
 use libfuzzer_sys::fuzz_target;
-use rara::reference::{Footprint, Real, ViewTransform, cutoff, project, splat};
+use rara_reference::{Footprint, Real, ViewTransform, cutoff, project, splat};
 use rara::{
     Camera, Clip, ClipOp, ExactForm, Gaussians, Miss, Mode, Plane, Projection, Settings,
 };

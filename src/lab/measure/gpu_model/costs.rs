@@ -12,7 +12,8 @@
 //! memory (`gathered`). Elements that are written out of order in short runs count as they are, although their sectors' rests
 //! may be moved too.
 
-use rara::{limits, types};
+use rara::types;
+use rara_base::limits;
 
 use super::numbers::{FrameNumbers, WORD};
 

@@ -1,6 +1,6 @@
 //! The numbers of a frame that the costs of its passes depend on.
 
-use rara::limits;
+use rara_base::limits;
 
 pub(super) const WORD: u64 = size_of::<u32>() as u64;
 

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use rara::counted::counted;
+use rara_base::counted::counted;
 
 use crate::study::{Evaluation, MetricResult, Participant, Questions, Sample};
 

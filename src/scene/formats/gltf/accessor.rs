@@ -5,8 +5,8 @@ use serde_json::Value;
 use super::super::Failure;
 use super::buffers::Buffers;
 use super::{index, list};
-use crate::counted::counted;
-use crate::error::shortened;
+use rara_base::counted::counted;
+use rara_base::error::shortened;
 
 /// An attribute's numbers in memory.
 pub(super) struct Accessor {

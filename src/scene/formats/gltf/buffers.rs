@@ -78,7 +78,7 @@ impl<'a> Buffers<'a> {
             .map(|(name, _)| name)
             .find(|n| n.contains("compression"))
         {
-            let name = crate::error::shortened(name);
+            let name = rara_base::error::shortened(name);
             return Err(wrong(&format!(
                 "is compressed by {name}, which is not read"
             )));

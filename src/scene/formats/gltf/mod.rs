@@ -17,9 +17,9 @@ use super::super::assemble::{ColumnForm, OPACITY, ROTATION, SCALES, SH, SLOTS};
 use super::super::{SH_0, sh_coefficients};
 use super::bytes::Bytes;
 use super::{Failure, FormatOutput, json, room, spz};
-use crate::counted::counted;
-use crate::error::shortened;
 use crate::placement::Placement;
+use rara_base::counted::counted;
+use rara_base::error::shortened;
 
 /// The extension's name, which attributes begin with.
 pub(super) const EXTENSION: &str = "KHR_gaussian_splatting";

@@ -74,7 +74,7 @@ fn indices(object: &Value, key: &str) -> Result<Vec<usize>, Failure> {
 }
 
 /// The placement of something within what is placed itself.
-pub(super) fn joined(outer: &Placement, inner: &Placement) -> crate::error::Result<Placement> {
+pub(super) fn joined(outer: &Placement, inner: &Placement) -> rara_base::error::Result<Placement> {
     if *inner == Placement::IDENTITY {
         return Ok(*outer);
     }

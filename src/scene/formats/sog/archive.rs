@@ -3,8 +3,8 @@
 use super::super::bytes::Bytes;
 use super::super::inflate;
 use super::Failure;
-use crate::counted::counted;
-use crate::error::shortened;
+use rara_base::counted::counted;
+use rara_base::error::shortened;
 
 /// Files of an archive that are looked at, at most.
 const MOST_FILES: u16 = 1000;

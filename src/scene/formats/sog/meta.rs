@@ -2,8 +2,8 @@
 
 use serde_json::Value;
 
-use crate::counted::counted;
-use crate::error::shortened;
+use rara_base::counted::counted;
+use rara_base::error::shortened;
 
 /// What the values of a picture stand for.
 pub(super) enum Range {

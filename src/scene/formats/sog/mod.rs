@@ -14,7 +14,7 @@ use self::meta::{Meta, Range};
 use self::picture::Picture;
 use super::super::assemble::{ColumnForm, OPACITY, ROTATION, SCALES, SH, SLOTS, unit_quaternion};
 use super::{Failure, FormatOutput, beside, json, room};
-use crate::counted::counted;
+use rara_base::counted::counted;
 
 pub(super) use self::streamed::read as read_streamed;
 
@@ -76,7 +76,7 @@ fn read(
         if (picture.pixels().len() as u64) < count {
             return Err(Failure::Format(format!(
                 "the picture {} has {} for its {}; get the scene again",
-                crate::error::shortened(name),
+                rara_base::error::shortened(name),
                 counted(picture.pixels().len(), "pixel"),
                 counted(count, "Gaussian")
             )));
@@ -102,7 +102,7 @@ fn read(
             if room < sets {
                 return Err(Failure::Format(format!(
                     "the picture {} has room for {room} of {sets} sets of spherical harmonics; get the scene again",
-                    crate::error::shortened(harmonics.centroids),
+                    rara_base::error::shortened(harmonics.centroids),
                 )));
             }
             Some((

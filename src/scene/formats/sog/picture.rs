@@ -5,8 +5,8 @@ use std::io::Cursor;
 use image_webp::WebPDecoder;
 
 use super::Failure;
-use crate::counted::counted;
-use crate::error::shortened;
+use rara_base::counted::counted;
+use rara_base::error::shortened;
 
 /// A picture: red, green, blue and alpha of each pixel.
 pub(super) struct Picture {

@@ -95,7 +95,7 @@ fn load(
     if !read.insert(Path::new(name).components().collect()) {
         return Err(Failure::Format(format!(
             "lod-meta.json names the file \"{}\" twice; export the scene again",
-            crate::error::shortened(name)
+            rara_base::error::shortened(name)
         )));
     }
     let document = json(&beside(name, folder)?)?;

@@ -5,8 +5,8 @@ use serde_json::{Value, json};
 
 use super::super::super::Gaussians;
 use super::super::gltf::{EXTENSION, turn};
-use crate::error::{Error, Result};
 use crate::placement::Placement;
+use rara_base::error::{Error, Result};
 
 pub(super) fn encode(gaussians: &Gaussians) -> Result<Vec<u8>> {
     let mut turned = gaussians.clone();

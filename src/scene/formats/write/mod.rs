@@ -7,7 +7,7 @@ mod sog;
 mod spz;
 
 use super::super::{Format, Gaussians};
-use crate::error::Result;
+use rara_base::error::Result;
 
 /// How files of a format are written.
 pub(in super::super) struct Writer {
@@ -49,7 +49,7 @@ impl Writer {
     /// The bytes of a file, and how many Gaussians have a number that it holds no nearer than at an end of its range.
     ///
     /// # Errors
-    /// [`Error::Invalid`](crate::Error::Invalid) for Gaussians that it cannot hold.
+    /// [`Error::Invalid`](rara_base::error::Error::Invalid) for Gaussians that it cannot hold.
     pub(in super::super) fn encode(&self, gaussians: &Gaussians) -> Result<(Vec<u8>, u64)> {
         let bytes = (self.encode)(gaussians)?;
         let beyond = |&at: &usize| !self.ranges.hold(gaussians, at);

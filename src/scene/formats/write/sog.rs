@@ -7,7 +7,7 @@ use super::super::super::Gaussians;
 use super::super::sog::{CENTROIDS, LARGEST};
 use super::codebook::{Codebook, sets};
 use super::{ANY, Ranges, along_a_curve, byte, smallest_three};
-use crate::error::{Error, Result};
+use rara_base::error::{Error, Result};
 
 /// Sets of spherical harmonics at most.
 const SETS: usize = 65536;

@@ -8,7 +8,7 @@ use flate2::write::GzEncoder;
 use super::super::super::Gaussians;
 use super::super::spz::{ANTIALIASED, COLOUR, RIGHT_UP_BACK, signs};
 use super::{Ranges, byte, smallest_three};
-use crate::error::{Error, Result};
+use rara_base::error::{Error, Result};
 
 /// The most bits behind the point of a position that are used.
 const MOST_BITS: u32 = 16;

@@ -2,8 +2,8 @@
 
 use std::f64::consts::{PI, SQRT_2};
 
+use rara::Gaussians;
 use rara::glam::{DMat3, DVec3};
-use rara::{Gaussians, reference};
 
 /// The real spherical harmonic of a degree and an order in a direction of length one. It is orthonormal over the sphere, and
 /// odd orders are negative, as in 3DGS.
@@ -92,8 +92,8 @@ pub(super) fn assert_shown(name: &str, found: &Gaussians, stored: &Stored<f64>, 
         own[..3].fill(0.0); // of degree 0, which no axes change
         for direction in directions() {
             let d = to_ours * direction;
-            let d = reference::vec3(d.x, d.y, d.z);
-            let shown: [f64; 3] = reference::harmonics::colour(&own, degree, d);
+            let d = rara_reference::vec3(d.x, d.y, d.z);
+            let shown: [f64; 3] = rara_reference::harmonics::colour(&own, degree, d);
             for (channel, shown) in shown.into_iter().enumerate() {
                 let terms = all.iter().enumerate().map(|(coefficient, &(l, m))| {
                     stored.at(gaussian, coefficient, channel) * harmonic(l, m, direction)

@@ -1,0 +1,19 @@
+//! What all crates of rara stand on: errors, files, statistics, and the numbers that host and shaders share.
+//!
+//! Applications use the crate `rara`, which shows what of this is meant for them; the rest may change with any version.
+
+#![forbid(unsafe_code)]
+
+pub mod counted;
+pub mod error;
+pub mod files;
+pub mod fnv;
+#[cfg(feature = "json")]
+pub mod json;
+pub mod limits;
+mod setters;
+pub mod stats;
+
+/// The text of `limits.rs`, of which the build of rara makes GLSL.
+#[doc(hidden)]
+pub const LIMITS: &str = include_str!("limits.rs");

@@ -1,0 +1,105 @@
+//! Every number that host and shaders share, each here and nowhere else. `glsl/limits.glsl` is made of this file by
+//! tools/shaders, and a build in the repository checks that it is the same.
+
+/// Low-pass that 3DGS adds to the projected covariance's diagonal, px^2. Scenes are trained with it.
+pub const LOW_PASS: f32 = 0.3;
+/// Least square of the factor by which the opacity of antialiased Gaussians makes up for that. Scenes are trained with it.
+pub const COMPENSATION_SQUARE_MIN: f32 = 0.000025;
+/// Centres nearer than this along the view axis are culled where a camera has no near cut of its own, the scene's units.
+pub const NEAR_Z: f32 = 0.2;
+/// The projection's Jacobian is evaluated with x/z and y/z clamped this share of the picture beyond each edge.
+pub const CLAMP_MARGIN: f32 = 0.15;
+/// Largest opacity of a splat in a pixel.
+pub const ALPHA_MAX: f32 = 0.99;
+/// 1 / ALPHA_MIN: a splat contributes nothing to a pixel in which its unclipped alpha is below 1/255.
+pub const ALPHA_MIN_INVERSE: f32 = 255.0;
+/// A cut splat is weighted by the perspective-exact form where sigma_max / Z exceeds this, by the affine form below.
+pub const BEAM_SWITCH: f32 = 0.005;
+/// A splat's band follows from where the eye is in it when perspective leaves less than this share of the splat's depth.
+pub const WIDENING_REST: f32 = 0.05;
+/// A plane this many deviations beyond the eye cuts off no more than 2e-9 of what is in front of the eye.
+pub const BEYOND_EYE: f32 = 6.0;
+/// The most coefficients that a colour channel has: those of degree 3.
+pub const MAX_SH_COEFFICIENTS: u32 = 16;
+/// Opacity below which a splat is invisible everywhere, and alpha below which a cut splat's weight is not computed: 1/255.
+pub const ALPHA_MIN: f32 = 1.0 / ALPHA_MIN_INVERSE;
+/// Gaussians of a block, one workgroup of clip, classify and compact; eight words of its bit masks.
+pub const BLOCK_SIZE: u32 = 256;
+/// Blocks that a workgroup decides about at a time.
+pub const BLOCK_GROUP_SIZE: u32 = 64;
+/// Words that a reclipped frame keeps of a block: see reclip.glsl.
+pub const RECLIP_WORDS: u32 = 32;
+/// Opacity from which a splat's bounding box spans a pixel whatever the projection: its contour of 1/255 is then at 0.92
+/// deviations or more, and the low-pass alone makes a deviation 0.55 px.
+pub const OPACITY_SPANNING: f32 = 0.006;
+/// Standard deviation on the screen up to which single precision surely finds a splat's conic, px.
+pub const DRAWABLE_DEVIATION: f32 = 1e6;
+/// Survivors a workgroup of project and cutoff handles.
+pub const SURVIVOR_GROUP_SIZE: u32 = 64;
+/// Splats a mesh workgroup emits: 4 vertices and 2 triangles each, half of the least that Vulkan guarantees.
+pub const MESH_GROUP_SIZE: u32 = 32;
+/// Columns of pixels of a tile.
+pub const TILE_WIDTH: u32 = 8;
+/// Rows of pixels of a tile.
+pub const TILE_HEIGHT: u32 = 8;
+/// Rows of tiles that are drawn together, column by column.
+pub const STRIP_ROWS: u32 = 8;
+/// Tiles along each side of what the composite draws as one quad. Each has a bit in two words, so there are 8.
+pub const QUAD_TILES: u32 = 8;
+/// Bits a pass of the radix sort looks at.
+pub const SORT_BITS: u32 = 8;
+/// Workgroup size of the sort by runs; one invocation owns a run of consecutive keys, which makes the sort stable.
+pub const SORT_GROUP_SIZE: u32 = 64;
+/// Most splats of one depth that one invocation orders alone.
+pub const TIES_ALONE: u32 = 24;
+/// Surfaces that a splat is weighed by where regions have parts or bend, those that cut it nearest its centre. Of the others
+/// it is on the side of its centre. A region that is a flat list of planes has no such limit.
+pub const MAX_CUTTING: u32 = 8;
+/// Surfaces of a region from which its blocks have shortlists: the surfaces that may cut a Gaussian of the block.
+pub const SHORTLIST_FROM: u32 = 9;
+/// The most surfaces of a shortlist. The Gaussians of a block that more may cut ask all surfaces of the region.
+pub const SHORTLIST_SURFACES: u32 = 31;
+/// Words of a shortlist: see region/shortlist.glsl.
+pub const SHORTLIST_WORDS: u32 = 64;
+/// Workgroup size of the sort for GPUs.
+pub const RADIX_GROUP_SIZE: u32 = 256;
+/// Consecutive keys of such a workgroup: its partition.
+pub const RADIX_PARTITION: u32 = 4096;
+/// The most groups of splats of one depth that are more than such a workgroup sorts.
+pub const MOST_CROWDS: u32 = 1020;
+/// The most parts into which the scene's numbers are divided to sort such a group.
+pub const MOST_STRETCHES: u32 = 256;
+/// The fewest partitions of such a part.
+pub const LEAST_STRETCH: u32 = 4;
+/// Counts of an invocation in a turn of that sort's scans.
+pub const RADIX_SCAN_COUNTS: u32 = 8;
+/// Tiles across a macro-tile, in which kernels for GPUs collect splats before they list those of each tile. A picture
+/// of 1920x1080 then has 255 macro-tiles, one fewer than a digit of the sort has values.
+pub const MACRO_COLUMNS: u32 = 16;
+/// Tiles down a macro-tile.
+pub const MACRO_ROWS: u32 = 8;
+/// Bits of a macro-tile's number in the key of a pair of macro-tile and splat, enough for pictures of 32768x32768.
+pub const PAIR_BITS: u32 = 17;
+/// Tiles of a macro-tile.
+pub const MACRO_TILES: u32 = MACRO_COLUMNS * MACRO_ROWS;
+/// Workgroup size of the search for a macro-tile's first pair: what it divides the pairs into in a step.
+pub const MACRO_RANGE_GROUP_SIZE: u32 = 64;
+/// Most splats of a macro-tile that a workgroup lists the tiles of: a batch.
+pub const BATCH_SPLATS: u32 = 512;
+/// Workgroup size of the spans of tiles, of which one invocation owns a run of consecutive splats.
+pub const SPAN_GROUP_SIZE: u32 = 64;
+/// Workgroup size where an invocation owns a row of tiles or a part of its spans: small, since rows hold unequal numbers.
+pub const ROW_GROUP_SIZE: u32 = 8;
+/// Columns of a grid of workgroups that does not fit in a row. More than 65535 would exceed the least limit of devices.
+pub const GROUP_COLUMNS: u32 = 32768;
+/// Focal length beyond which positions in the camera's frame are computed in two floats, px. Single precision is off by
+/// about 2e-7 of the distance, which is this times the focal length in pixels: 4e-4 px at this one.
+pub const PRECISE_FOCAL: f32 = 2048.0;
+/// Half side of the largest quad drawn along a splat's own axes, px. Beyond it the corners' f32 error reaches pixels,
+/// and the quad becomes the splat's bounding box inside the picture.
+pub const QUAD_MAX_EXTENT: f32 = 4096.0;
+/// Buffers that a shader can declare, whose addresses fit in the 128 bytes of push constants that every device has beside
+/// `MAX_PARAMS` words of parameters.
+pub const MAX_BUFFERS: u32 = 10;
+/// Words of parameters that a shader can declare.
+pub const MAX_PARAMS: u32 = 12;

@@ -1,0 +1,319 @@
+//! A camera in COLMAP's convention: +x right, +y down, +z forward, pixel centres at half-integers.
+
+mod matrices;
+
+use std::borrow::Cow;
+
+use glam::{DMat3, DMat4, DVec3};
+
+use crate::clip::{Clip, ClipOp, Plane};
+pub use matrices::Ndc;
+use rara_base::error::{Error, Result};
+use rara_base::limits;
+use rara_base::setters;
+
+/// How a camera takes points in its own axes, X right, Y down and Z forward, to pixels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Projection {
+    /// A pinhole: lines of sight pass through the eye, and a point is seen at `(fx X / Z + cx, fy Y / Z + cy)`.
+    #[default]
+    Perspective,
+    /// Lines of sight run along the view axis, and a point is seen at `(fx X + cx, fy Y + cy)`, as large at every
+    /// depth. The footprint of a Gaussian is exact then, whatever its size, and so is its share in mode `exact`.
+    Orthographic,
+}
+
+/// A camera and the size of its picture. All in f64: the GPU gets single-precision values derived from it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct Camera {
+    /// Picture width, pixels.
+    pub width: u32,
+    /// Picture height, pixels.
+    pub height: u32,
+    /// Focal length along x, pixels; of an orthographic camera the pixels of a world unit.
+    pub fx: f64,
+    /// Focal length along y, pixels; of an orthographic camera the pixels of a world unit.
+    pub fy: f64,
+    /// Principal point, pixels from the picture's left edge (`width / 2` is the middle).
+    pub cx: f64,
+    /// Principal point, pixels from the picture's top edge (`height / 2` is the middle).
+    pub cy: f64,
+    /// The eye's position, world units. An orthographic camera sees the same from every point of a line along its view
+    /// axis, but for what is nearer than its [near cut](Self::near_cut). Depths count from the eye here too, in single precision:
+    /// an eye not much farther away than the scene is large keeps what lies close together in order.
+    pub eye: DVec3,
+    /// World to camera rotation (rows are the camera's right, down and forward axes in the world). With a determinant of -1,
+    /// as [`of_projection`](Self::of_projection) gives a left-handed host, the picture is that of a mirrored world.
+    pub rotation: DMat3,
+    /// How points become pixels.
+    pub projection: Projection,
+    /// The depth, world units along the view axis, from which on the scene is kept: a plane across the axis that moves with
+    /// the camera and cuts every layer, whatever else cuts it. Splats are cut as by any other plane, by the mode of the
+    /// [settings](crate::settings::Settings); in mode `none` it is not asked.
+    pub clip_near: Option<f64>,
+    /// The depth up to which the scene is kept, likewise.
+    pub clip_far: Option<f64>,
+    /// The depth, world units, from which on splats are drawn: those whose centres are nearer are left out whole. Without one
+    /// it is 0.2 units of the scene, as in 3DGS, however large these are in the world.
+    pub near_cut: Option<f64>,
+}
+
+setters!(Camera {
+    width: u32,
+    height: u32,
+    fx: f64,
+    fy: f64,
+    cx: f64,
+    cy: f64,
+    eye: DVec3,
+    rotation: DMat3,
+    projection: Projection,
+    clip_near: Option<f64>,
+    clip_far: Option<f64>,
+    near_cut: Option<f64>,
+});
+
+impl Camera {
+    /// Largest picture side, pixels. Vulkan guarantees 4096; every driver we know has at least this.
+    pub const MAX_SIZE: u32 = 16384;
+
+    /// A camera at `eye` that looks at `target`. `up` points up in the picture (the default world has y down: `-Y`).
+    /// `fov_y` is the full vertical field of view in degrees.
+    pub fn look_at(
+        eye: DVec3,
+        target: DVec3,
+        up: DVec3,
+        fov_y: f64,
+        (width, height): (u32, u32),
+    ) -> Result<Self> {
+        let rotation = facing(eye, target, up)?;
+        if !(fov_y > 0.0 && fov_y < 180.0) {
+            return Err(Error::Invalid(format!(
+                "a field of view of {fov_y} degrees is not between 0 and 180"
+            )));
+        }
+        let focal = f64::from(height) / 2.0 / (fov_y.to_radians() / 2.0).tan();
+        Self::centred(eye, rotation, focal, (width, height)).checked()
+    }
+
+    /// An orthographic camera at `eye` that looks at `target`, whose picture is `height` world units high. `up` is as for
+    /// [`look_at`](Self::look_at).
+    ///
+    /// ```
+    /// # use rara_scene as rara;
+    /// use rara::{Camera, Projection, glam::DVec3};
+    ///
+    /// let camera = Camera::orthographic(DVec3::NEG_Z, DVec3::ZERO, DVec3::NEG_Y, 2.5, (640, 500))?;
+    /// assert_eq!((camera.fx, camera.projection), (200.0, Projection::Orthographic));
+    /// # Ok::<(), rara::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] for a height that is not above zero, for numbers that are not finite, a `target` that is the eye,
+    /// an `up` along the view axis, and an impossible size of picture.
+    pub fn orthographic(
+        eye: DVec3,
+        target: DVec3,
+        up: DVec3,
+        height: f64,
+        size: (u32, u32),
+    ) -> Result<Self> {
+        let rotation = facing(eye, target, up)?;
+        if !(height.is_finite() && height > 0.0) {
+            return Err(Error::Invalid(format!(
+                "an orthographic picture {height} world units high is not possible; give a height above zero"
+            )));
+        }
+        let scale = f64::from(size.1) / height;
+        Self::centred(eye, rotation, scale, size)
+            .projection(Projection::Orthographic)
+            .checked()
+    }
+
+    /// A camera whose principal point is the picture's middle and whose pixels are square.
+    fn centred(eye: DVec3, rotation: DMat3, focal: f64, (width, height): (u32, u32)) -> Self {
+        Self {
+            width,
+            height,
+            fx: focal,
+            fy: focal,
+            cx: f64::from(width) / 2.0,
+            cy: f64::from(height) / 2.0,
+            eye,
+            rotation,
+            projection: Projection::Perspective,
+            clip_near: None,
+            clip_far: None,
+            near_cut: None,
+        }
+    }
+
+    /// A camera from a rigid world-to-camera matrix. The rotation part is made orthonormal when it is nearly so
+    /// already (files round it); anything else (scale, shear, mirror) is an error.
+    pub fn from_world_to_camera(
+        matrix: DMat4,
+        (fx, fy, cx, cy): (f64, f64, f64, f64),
+        (width, height): (u32, u32),
+    ) -> Result<Self> {
+        let rows = DMat3::from_mat4(matrix).transpose();
+        let error = (rows.transpose() * rows - DMat3::IDENTITY)
+            .to_cols_array()
+            .iter()
+            .fold(0.0_f64, |a, x| a.max(x.abs()));
+        if !matrix.is_finite() || error.is_nan() || error > 1e-3 || rows.determinant() < 0.0 {
+            return Err(Error::Invalid("the camera's matrix is not a rotation and a translation (scale, shear and mirrors are not supported)".into()));
+        }
+        let forward = rows.z_axis.normalize();
+        let right = (rows.x_axis - forward * rows.x_axis.dot(forward)).normalize();
+        let rotation = DMat3::from_cols(right, forward.cross(right), forward).transpose();
+        let eye = -(rotation.transpose() * matrix.w_axis.truncate());
+        Self {
+            width,
+            height,
+            fx,
+            fy,
+            cx,
+            cy,
+            eye,
+            rotation,
+            projection: Projection::Perspective,
+            clip_near: None,
+            clip_far: None,
+            near_cut: None,
+        }
+        .checked()
+    }
+
+    fn check_size((width, height): (u32, u32)) -> Result<()> {
+        let possible = 1..=Self::MAX_SIZE;
+        if !(possible.contains(&width) && possible.contains(&height)) {
+            return Err(Error::Invalid(format!(
+                "a picture of {width}x{height} is not possible; each side is 1 to {} pixels",
+                Self::MAX_SIZE
+            )));
+        }
+        Ok(())
+    }
+
+    fn checked(self) -> Result<Self> {
+        Self::check_size((self.width, self.height))?;
+        let focal_ok = |f: f64| f.is_finite() && f > 0.0;
+        if !(focal_ok(self.fx) && focal_ok(self.fy) && self.cx.is_finite() && self.cy.is_finite()) {
+            return Err(Error::Invalid(
+                "the camera's focal lengths must be positive and its principal point finite".into(),
+            ));
+        }
+        // Finite numbers of a file can still sum up beyond the range.
+        if !self.eye.is_finite() {
+            return Err(Error::Invalid("the camera's position is not finite".into()));
+        }
+        Ok(self)
+    }
+
+    /// The same camera for a picture of another size: focal lengths and principal point scale with it.
+    pub fn resized(self, (width, height): (u32, u32)) -> Result<Self> {
+        let (sx, sy) = (
+            f64::from(width) / f64::from(self.width),
+            f64::from(height) / f64::from(self.height),
+        );
+        Self {
+            width,
+            height,
+            fx: self.fx * sx,
+            fy: self.fy * sy,
+            cx: self.cx * sx,
+            cy: self.cy * sy,
+            ..self
+        }
+        .checked()
+    }
+
+    /// The planes at [`clip_near`](Self::clip_near) and [`clip_far`](Self::clip_far).
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] for depths that are not finite, and where nothing lies between the two.
+    pub fn clip_planes(&self) -> Result<Vec<Plane>> {
+        if let (Some(near), Some(far)) = (self.clip_near, self.clip_far)
+            && near >= far
+        {
+            return Err(Error::Invalid(format!(
+                "nothing lies between a near plane at a depth of {near} and a far plane at {far}; give a far plane behind the near one"
+            )));
+        }
+        let forward = self.rotation.transpose() * DVec3::Z;
+        let depth_of_origin = -forward.dot(self.eye);
+        let near = self
+            .clip_near
+            .map(|near| Plane::new(forward, depth_of_origin - near));
+        let far = self
+            .clip_far
+            .map(|far| Plane::new(-forward, far - depth_of_origin));
+        near.into_iter().chain(far).collect()
+    }
+
+    /// The depth from which splats are drawn, the scene's units, of which one of the camera's has so many.
+    #[doc(hidden)]
+    pub fn nearest(&self, unit: f64) -> f64 {
+        self.near_cut
+            .map_or(f64::from(limits::NEAR_Z), |depth| depth * unit)
+    }
+
+    /// Checks that splats can be drawn from its [near cut](Self::near_cut) on.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] for a depth that is not above 0, or not finite, in single precision.
+    pub fn check_near_cut(&self) -> Result<()> {
+        let is_depth = |depth: f32| depth.is_finite() && depth > 0.0;
+        match self.near_cut {
+            Some(depth) if !is_depth(depth as f32) => Err(Error::Invalid(format!(
+                "a near cut at a depth of {depth} is not in front of the eye; give a depth above 0"
+            ))),
+            _ => Ok(()),
+        }
+    }
+
+    /// True when a plane that moves with the camera cuts the scene.
+    #[doc(hidden)]
+    pub fn clips(&self) -> bool {
+        self.clip_near.is_some() || self.clip_far.is_some()
+    }
+
+    /// What this camera sees of a region: the rest between its own planes.
+    #[doc(hidden)]
+    pub fn sees_of<'a>(&self, clip: &'a Clip) -> Result<Cow<'a, Clip>> {
+        if !self.clips() {
+            return Ok(Cow::Borrowed(clip));
+        }
+        let planes = Clip::of(self.clip_planes()?, ClipOp::And);
+        Ok(Cow::Owned(Clip::joined(
+            [clip.clone(), planes],
+            ClipOp::And,
+        )))
+    }
+
+    /// World to camera, as one matrix.
+    pub fn world_to_camera(&self) -> DMat4 {
+        DMat4::from_mat3_translation(self.rotation, -(self.rotation * self.eye))
+    }
+}
+
+/// The world to camera rotation of a camera at `eye` that looks at `target` and has `up` upwards in its picture.
+fn facing(eye: DVec3, target: DVec3, up: DVec3) -> Result<DMat3> {
+    if !(eye.is_finite() && target.is_finite() && up.is_finite()) {
+        return Err(Error::Invalid(
+            "the camera's eye, target and up must be finite numbers".into(),
+        ));
+    }
+    let forward = (target - eye).try_normalize();
+    let forward = forward
+        .ok_or_else(|| Error::Invalid("the camera's eye and target are the same point".into()))?;
+    let right = forward
+        .cross(up)
+        .try_normalize()
+        .filter(|_| forward.cross(up).length() > 1e-12 * up.length());
+    let right = right.ok_or_else(|| {
+        Error::Invalid("the camera looks along its own up vector; give another --up".into())
+    })?;
+    Ok(DMat3::from_cols(right, forward.cross(right), forward).transpose())
+}

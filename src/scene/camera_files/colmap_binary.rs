@@ -1,0 +1,166 @@
+//! `cameras.bin` and `images.bin`: little endian, each count checked against the file's size before it is believed.
+
+use std::io::{BufRead, BufReader, Read, Seek, SeekFrom};
+use std::path::Path;
+
+use glam::{DQuat, DVec3};
+
+use super::colmap::{ColmapImage, Lens, MODELS};
+use rara_base::counted::counted;
+use rara_base::error::{Error, Result};
+
+/// Longest picture name we read; paths are shorter on every system.
+const MAX_NAME: u64 = 4096;
+/// A 2D point of a picture: x, y and the 3D point's number. We skip them.
+const POINT_SIZE: u64 = 24;
+
+struct Records<'a, R> {
+    path: &'a Path,
+    reader: BufReader<R>,
+    size: u64,
+    left: u64,
+}
+
+pub(super) fn lenses<R: Read + Seek>(source: R, path: &Path) -> Result<Vec<Lens>> {
+    let mut records = Records::new(source, path)?;
+    let count = records.count("cameras", 24 + 3 * 8)?;
+    let mut lenses = Vec::with_capacity(count);
+    for _ in 0..count {
+        let id = u32::from_le_bytes(records.bytes()?);
+        let number = i32::from_le_bytes(records.bytes()?);
+        let model = usize::try_from(number)
+            .ok()
+            .and_then(|number| MODELS.get(number));
+        let model = model.ok_or_else(|| {
+            records.error(&format!(
+                "camera {id} has the unknown model {number}; undistort the pictures with COLMAP"
+            ))
+        })?;
+        let width = u64::from_le_bytes(records.bytes()?);
+        let height = u64::from_le_bytes(records.bytes()?);
+        let parameters = (0..model.parameters)
+            .map(|_| records.number())
+            .collect::<Result<_>>()?;
+        lenses.push(Lens {
+            id,
+            model,
+            width,
+            height,
+            parameters,
+        });
+    }
+    Ok(lenses)
+}
+
+pub(super) fn images<R: Read + Seek>(source: R, path: &Path) -> Result<Vec<ColmapImage>> {
+    let mut records = Records::new(source, path)?;
+    let count = records.count("pictures", 4 + 7 * 8 + 4 + 1 + 8)?;
+    let mut images = Vec::with_capacity(count);
+    for _ in 0..count {
+        let _id: [u8; 4] = records.bytes()?;
+        let [w, x, y, z] = records.numbers()?;
+        let translation: DVec3 = records.numbers()?.into();
+        let lens = u32::from_le_bytes(records.bytes()?);
+        let name = records.name()?;
+        let points = u64::from_le_bytes(records.bytes()?);
+        records.skip(points.saturating_mul(POINT_SIZE))?;
+        images.push(ColmapImage {
+            name,
+            lens,
+            rotation: DQuat::from_xyzw(x, y, z, w),
+            translation,
+        });
+    }
+    Ok(images)
+}
+
+impl<'a, R: Read + Seek> Records<'a, R> {
+    fn new(mut source: R, path: &'a Path) -> Result<Self> {
+        let size = source.seek(SeekFrom::End(0)).map_err(Error::io(path))?;
+        source.rewind().map_err(Error::io(path))?;
+        Ok(Self {
+            path,
+            reader: BufReader::new(source),
+            size,
+            left: size,
+        })
+    }
+
+    fn error(&self, message: &str) -> Error {
+        Error::format(
+            self.path,
+            format!("byte {}: {message}", self.size - self.left),
+        )
+    }
+
+    /// The number of records that follow, each of which takes at least `least` bytes.
+    fn count(&mut self, what: &str, least: u64) -> Result<usize> {
+        let count = u64::from_le_bytes(self.bytes()?);
+        match usize::try_from(count) {
+            Ok(fits) if count <= self.left / least => Ok(fits),
+            _ => Err(self.error(&format!(
+                "the file promises {count} {what}, but has only {}; it is cut off or no COLMAP model",
+                counted(self.size, "byte")
+            ))),
+        }
+    }
+
+    fn take(&mut self, bytes: u64) -> Result<()> {
+        match self.left.checked_sub(bytes) {
+            Some(left) => {
+                self.left = left;
+                Ok(())
+            }
+            None => {
+                Err(self
+                    .error("the file ends inside a record; it is cut off, export the model again"))
+            }
+        }
+    }
+
+    fn bytes<const N: usize>(&mut self) -> Result<[u8; N]> {
+        self.take(N as u64)?;
+        let mut bytes = [0; N];
+        self.reader
+            .read_exact(&mut bytes)
+            .map_err(Error::io(self.path))?;
+        Ok(bytes)
+    }
+
+    fn number(&mut self) -> Result<f64> {
+        Ok(f64::from_le_bytes(self.bytes()?))
+    }
+
+    fn numbers<const N: usize>(&mut self) -> Result<[f64; N]> {
+        let mut numbers = [0.0; N];
+        for number in &mut numbers {
+            *number = self.number()?;
+        }
+        Ok(numbers)
+    }
+
+    /// Text up to a zero byte.
+    fn name(&mut self) -> Result<String> {
+        let mut name = Vec::new();
+        let limit = MAX_NAME.min(self.left);
+        (&mut self.reader)
+            .take(limit)
+            .read_until(0, &mut name)
+            .map_err(Error::io(self.path))?;
+        if name.pop() != Some(0) {
+            return Err(
+                self.error("a picture's name does not end; this is no COLMAP model or cut off")
+            );
+        }
+        self.take(name.len() as u64 + 1)?;
+        Ok(String::from_utf8_lossy(&name).into_owned())
+    }
+
+    fn skip(&mut self, bytes: u64) -> Result<()> {
+        self.take(bytes)?;
+        // `take` has checked it against the file's size, which fits.
+        self.reader
+            .seek_relative(bytes as i64)
+            .map_err(Error::io(self.path))
+    }
+}

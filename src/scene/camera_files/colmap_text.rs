@@ -1,0 +1,125 @@
+//! `cameras.txt` and `images.txt`.
+
+use std::io::{BufRead, BufReader, Read};
+use std::path::Path;
+use std::str::SplitAsciiWhitespace;
+
+use glam::{DQuat, DVec3};
+
+use super::colmap::{ColmapImage, Lens, MODELS};
+use rara_base::error::{Error, Result};
+
+/// The line of a picture's points has some 30 bytes for each, and no picture has so many.
+const MAX_LINE: u64 = 64 << 20;
+
+struct Lines<'a, R> {
+    path: &'a Path,
+    reader: BufReader<R>,
+    number: u64,
+    line: Vec<u8>,
+}
+
+pub(super) fn lenses<R: Read>(source: R, path: &Path) -> Result<Vec<Lens>> {
+    let mut lines = Lines::new(source, path);
+    let mut lenses = Vec::new();
+    while lines.next_data()? {
+        let lens = lines.parse(|words| {
+            let id = word(words)?;
+            let name = words.next()?;
+            let model = MODELS.iter().find(|model| model.name == name)?;
+            let (width, height) = (word(words)?, word(words)?);
+            let parameters: Vec<f64> = (0..model.parameters)
+                .map(|_| word(words))
+                .collect::<Option<_>>()?;
+            Some(Lens {
+                id,
+                model,
+                width,
+                height,
+                parameters,
+            })
+        });
+        lenses.push(lens.ok_or_else(|| {
+            lines.error("this is not `CAMERA_ID MODEL WIDTH HEIGHT PARAMETERS` with a known model; export the model again")
+        })?);
+    }
+    Ok(lenses)
+}
+
+pub(super) fn images<R: Read>(source: R, path: &Path) -> Result<Vec<ColmapImage>> {
+    let mut lines = Lines::new(source, path);
+    let mut images = Vec::new();
+    while lines.next_data()? {
+        let image = lines.parse(|words| {
+            let _id: u32 = word(words)?;
+            let [w, x, y, z] = [word(words)?, word(words)?, word(words)?, word(words)?];
+            let translation = DVec3::new(word(words)?, word(words)?, word(words)?);
+            let lens = word(words)?;
+            // Names may hold blanks.
+            let name = words.collect::<Vec<_>>().join(" ");
+            (!name.is_empty()).then_some(ColmapImage {
+                name,
+                lens,
+                rotation: DQuat::from_xyzw(x, y, z, w),
+                translation,
+            })
+        });
+        images.push(image.ok_or_else(|| {
+            lines.error("this is not `IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME`; export the model again")
+        })?);
+        // The picture's points: always one line, often an empty one.
+        lines.next()?;
+    }
+    Ok(images)
+}
+
+fn word<T: std::str::FromStr>(words: &mut SplitAsciiWhitespace<'_>) -> Option<T> {
+    words.next()?.parse().ok()
+}
+
+impl<'a, R: Read> Lines<'a, R> {
+    fn new(source: R, path: &'a Path) -> Self {
+        Self {
+            path,
+            reader: BufReader::new(source),
+            number: 0,
+            line: Vec::new(),
+        }
+    }
+
+    fn error(&self, message: &str) -> Error {
+        Error::format(self.path, format!("line {}: {message}", self.number))
+    }
+
+    /// Reads a line; `false` at the end of the file.
+    fn next(&mut self) -> Result<bool> {
+        self.line.clear();
+        self.number += 1;
+        let mut limited = (&mut self.reader).take(MAX_LINE);
+        let read = limited
+            .read_until(b'\n', &mut self.line)
+            .map_err(Error::io(self.path))?;
+        if read as u64 == MAX_LINE {
+            return Err(self.error("the line is too long; this is no COLMAP model"));
+        }
+        Ok(read > 0)
+    }
+
+    /// Reads on to a line that is neither blank nor a comment; `false` at the end of the file.
+    fn next_data(&mut self) -> Result<bool> {
+        while self.next()? {
+            let line = self.line.trim_ascii();
+            if !line.is_empty() && line[0] != b'#' {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
+    fn parse<T>(
+        &self,
+        parse: impl FnOnce(&mut SplitAsciiWhitespace<'_>) -> Option<T>,
+    ) -> Option<T> {
+        parse(&mut String::from_utf8_lossy(&self.line).split_ascii_whitespace())
+    }
+}

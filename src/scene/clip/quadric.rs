@@ -1,0 +1,236 @@
+//! Quadrics: spheres, ellipsoids, and the sides of cylinders and cones.
+
+use glam::{DMat3, DQuat, DVec3};
+
+use rara_base::error::{Error, Result};
+
+/// The side of a quadric surface that is kept: the points x with `constant + linear . p + p . matrix p >= 0`, where
+/// `p = x - anchor`.
+///
+/// The function is scaled so that its gradient on the surface is of the order of 1: it is a measure of how far a point is
+/// from the surface. The anchor is a point near the surface or the scene, where the numbers do not cancel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Quadric {
+    anchor: DVec3,
+    matrix: DMat3,
+    linear: DVec3,
+    constant: f64,
+}
+
+impl Quadric {
+    /// The inside of a sphere.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] for a centre that is not finite and a radius that is not above zero.
+    pub fn sphere(centre: DVec3, radius: f64) -> Result<Self> {
+        Self::ellipsoid(centre, DVec3::splat(radius), DQuat::IDENTITY)
+    }
+
+    /// The inside of an ellipsoid: its centre, its radii along its own axes, and its rotation.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] for numbers that are not finite, radii that are not above zero and a rotation that is zero.
+    pub fn ellipsoid(centre: DVec3, radii: DVec3, rotation: DQuat) -> Result<Self> {
+        let axes = DMat3::from_quat(unit(rotation)?);
+        let scale = 0.5 * radii.min_element();
+        // Ratios of radii stay in range where their squares would not.
+        let shares = (radii.min_element() / radii).powf(2.0) / (2.0 * radii.min_element());
+        Self::centred(centre, axes, -shares, scale, radii.min_element())
+    }
+
+    /// The inside of an endless cylinder around the line through two points.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] for numbers that are not finite, a radius that is not above zero and points that are one.
+    pub fn cylinder(from: DVec3, to: DVec3, radius: f64) -> Result<Self> {
+        let axes = around(to - from)?;
+        let share = -0.5 / radius;
+        Self::centred(
+            from,
+            axes,
+            DVec3::new(share, share, 0.0),
+            0.5 * radius,
+            radius,
+        )
+    }
+
+    /// The inside of an endless cone on both sides of its apex, around the line from there to the centre of a disc.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] for numbers that are not finite, a radius that is not above zero and an apex in the disc.
+    pub fn cone(apex: DVec3, base: DVec3, radius: f64) -> Result<Self> {
+        let axes = around(base - apex)?;
+        let slope = radius / (base - apex).length();
+        let share = 0.5 / radius;
+        let shares = DVec3::new(-share, -share, share * slope * slope);
+        Self::centred(apex, axes, shares, 0.0, radius)
+    }
+
+    /// `constant + sum of shares y^2`, with y the coordinates along axes from the centre.
+    fn centred(
+        centre: DVec3,
+        axes: DMat3,
+        shares: DVec3,
+        constant: f64,
+        least_radius: f64,
+    ) -> Result<Self> {
+        let matrix = axes * DMat3::from_diagonal(shares) * axes.transpose();
+        let is_finite = matrix.is_finite() && constant.is_finite() && centre.is_finite();
+        if !(is_finite && least_radius > 0.0) {
+            return Err(Error::Invalid(
+                "a curved clip shape needs finite numbers and radii above zero".into(),
+            ));
+        }
+        Ok(Self {
+            anchor: centre,
+            matrix,
+            linear: DVec3::ZERO,
+            constant,
+        })
+    }
+
+    /// The point that its numbers are relative to.
+    pub fn anchor(&self) -> DVec3 {
+        self.anchor
+    }
+
+    /// The factors of the squares and products of coordinates, symmetric, 1/world units.
+    pub fn matrix(&self) -> DMat3 {
+        self.matrix
+    }
+
+    /// The gradient at the anchor, no units.
+    pub fn linear(&self) -> DVec3 {
+        self.linear
+    }
+
+    /// The value at the anchor, world units.
+    pub fn constant(&self) -> f64 {
+        self.constant
+    }
+
+    /// The quadric that keeps the other side.
+    #[must_use]
+    pub fn flipped(&self) -> Self {
+        Self {
+            anchor: self.anchor,
+            matrix: self.matrix * -1.0,
+            linear: -self.linear,
+            constant: -self.constant,
+        }
+    }
+
+    /// The function of a point, which is positive on the visible side. Near the surface it is of the order of the distance,
+    /// world units.
+    pub fn distance(&self, point: DVec3) -> f64 {
+        let p = point - self.anchor;
+        self.constant + p.dot(self.linear + self.matrix * p)
+    }
+
+    /// Its gradient at a point.
+    pub fn gradient(&self, point: DVec3) -> DVec3 {
+        self.linear + 2.0 * (self.matrix * (point - self.anchor))
+    }
+
+    /// The same quadric with its numbers relative to another point.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn anchored(&self, anchor: DVec3) -> Self {
+        Self {
+            anchor,
+            matrix: self.matrix,
+            linear: self.gradient(anchor),
+            constant: self.distance(anchor),
+        }
+    }
+
+    /// The quadric that keeps the points x of which this one keeps `from + scale * rotation x`.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn seen_from(&self, from: DVec3, rotation: DQuat, scale: f64) -> Self {
+        let turn = DMat3::from_quat(rotation);
+        let back = turn.transpose();
+        Self {
+            anchor: back * (self.anchor - from) / scale,
+            matrix: back * self.matrix * turn * scale,
+            linear: back * self.linear,
+            constant: self.constant / scale,
+        }
+    }
+}
+
+/// Axes of which the third has this direction.
+fn around(direction: DVec3) -> Result<DMat3> {
+    let largest = direction.abs().max_element();
+    if !(largest > 0.0 && direction.is_finite()) {
+        return Err(Error::Invalid(
+            "the two points of a clip shape's axis are one; give it a length".into(),
+        ));
+    }
+    let axis = (direction / largest).normalize();
+    let (first, second) = axis.any_orthonormal_pair();
+    Ok(DMat3::from_cols(first, second, axis))
+}
+
+/// A quaternion of length one.
+///
+/// # Errors
+/// [`Error::Invalid`] for one that is zero or not finite.
+pub(super) fn unit(rotation: DQuat) -> Result<DQuat> {
+    let largest = rotation.to_array().into_iter().map(f64::abs);
+    let largest = largest.fold(0.0, f64::max);
+    if !(largest > 0.0 && rotation.is_finite()) {
+        return Err(Error::Invalid(
+            "a clip shape's quaternion is finite and not zero".into(),
+        ));
+    }
+    // One that has this length stays as it is, so that what is written of a shape is read as the same shape.
+    if (rotation.length_squared() - 1.0).abs() <= 4.0 * f64::EPSILON {
+        return Ok(rotation);
+    }
+    // The largest component is divided out first, which keeps the squares of tiny and huge ones in range.
+    Ok(DQuat::from_array(rotation.to_array().map(|v| v / largest)).normalize())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_quadric_measures_distances_near_its_surface() {
+        let centre = DVec3::new(1.0, -2.0, 0.5);
+        let sphere = Quadric::sphere(centre, 3.0).unwrap();
+        let direction = DVec3::new(2.0, 1.0, -2.0) / 3.0;
+        for away in [-1e-3, 0.0, 1e-3] {
+            let distance = sphere.distance(centre + (3.0 + away) * direction);
+            assert!((distance + away).abs() < 1e-6, "{distance}");
+        }
+        let cylinder = Quadric::cylinder(centre, centre + direction, 0.5).unwrap();
+        let side = centre + 7.0 * direction + 0.5 * direction.any_orthonormal_vector();
+        assert!(cylinder.distance(side).abs() < 1e-12);
+        let cone = Quadric::cone(centre, centre + 2.0 * direction, 1.0).unwrap();
+        let side = centre + direction + 0.5 * direction.any_orthonormal_vector();
+        assert!(cone.distance(side).abs() < 1e-12 && cone.distance(centre + direction) > 0.0);
+    }
+
+    #[test]
+    fn an_anchor_changes_numbers_and_not_the_surface() {
+        let huge = Quadric::sphere(DVec3::new(0.0, 0.0, 1e6), 1e6).unwrap();
+        let near = huge.anchored(DVec3::new(3.0, 1.0, -2.0));
+        for point in [DVec3::ZERO, DVec3::new(1.0, 2.0, 3.0)] {
+            assert!((huge.distance(point) - near.distance(point)).abs() < 1e-9);
+        }
+        assert!(near.linear().distance(DVec3::Z) < 1e-5);
+    }
+
+    #[test]
+    fn what_has_no_size_is_refused() {
+        assert!(Quadric::sphere(DVec3::ZERO, 0.0).is_err());
+        assert!(Quadric::sphere(DVec3::ZERO, f64::NAN).is_err());
+        assert!(Quadric::sphere(DVec3::NAN, 1.0).is_err());
+        assert!(Quadric::cylinder(DVec3::ONE, DVec3::ONE, 1.0).is_err());
+        assert!(Quadric::cone(DVec3::ZERO, DVec3::X, -1.0).is_err());
+        let none = DQuat::from_xyzw(0.0, 0.0, 0.0, 0.0);
+        assert!(Quadric::ellipsoid(DVec3::ZERO, DVec3::ONE, none).is_err());
+    }
+}

@@ -1,0 +1,84 @@
+//! Scenes: Gaussians, their files and synthetic ones; what cuts them, sees them and places them; the settings of a picture of
+//! them, and pictures. No Vulkan, no `unsafe`.
+//!
+//! Applications use the crate `rara`, which shows what of this is meant for them; the rest may change with any version.
+
+#![forbid(unsafe_code)]
+
+#[cfg(feature = "formats")]
+mod assemble;
+mod bounds;
+pub mod camera;
+#[cfg(feature = "json")]
+pub mod camera_files;
+pub mod clip;
+mod cross_section;
+pub mod depth;
+#[cfg(feature = "formats")]
+mod format;
+#[cfg(feature = "formats")]
+mod formats;
+mod framing;
+mod gaussians;
+mod generate;
+mod layer;
+#[cfg(feature = "formats")]
+mod load;
+mod numbers;
+mod parts;
+pub mod picture;
+mod placed;
+pub mod placement;
+#[cfg(feature = "formats")]
+mod ply;
+pub mod precision;
+mod predicate;
+mod predicate_text;
+mod property;
+#[cfg(feature = "formats")]
+mod report;
+#[cfg(feature = "formats")]
+mod save;
+pub mod settings;
+
+pub use camera::{Camera, Ndc, Projection};
+pub use clip::{Clip, ClipOp, Plane, Quadric, Shape, Surface};
+pub use depth::DepthMap;
+#[cfg(feature = "picture")]
+pub use picture::PngCompression;
+pub use picture::{Aov, Channel, Cue, Cues, Picture};
+pub use placement::Placement;
+pub use precision::{PhiForm, Precision, Preset, ShFormat, TargetFormat};
+pub use settings::{Decay, ExactForm, Miss, Mode, Raster, Settings, Show};
+
+pub use bounds::{Bounds, extent_along};
+pub use cross_section::cross_section;
+pub use gaussians::{GaussianArrays, Gaussians, sh_coefficients};
+#[doc(hidden)]
+pub use generate::Random;
+pub use generate::{Kind, generate};
+pub use layer::check_clip;
+pub use layer::{Layer, LayerState, Scene};
+pub use numbers::Numbers;
+pub use parts::Part;
+pub use predicate::{Attribute, Comparison, Predicate};
+pub use property::Property;
+#[cfg(feature = "formats")]
+pub use {
+    format::Format,
+    load::{Loaded, load, load_from, load_from_with, load_with},
+    report::{LoadReport, Remark},
+    save::{save, save_ply, saved_format},
+};
+
+// What examples in the documentation name as users of rara do.
+#[doc(hidden)]
+pub use {
+    glam,
+    rara_base::error::{Error, Result},
+};
+#[doc(hidden)]
+pub extern crate self as scene;
+
+/// The spherical harmonic of degree 0: the density of the colour that does not depend on the direction.
+const SH_0: f64 = 0.282_094_791_773_878_14;

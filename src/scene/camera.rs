@@ -7,6 +7,7 @@ use std::borrow::Cow;
 use glam::{DMat3, DMat4, DVec3};
 
 use crate::clip::{Clip, ClipOp, Plane};
+use crate::placement::Placement;
 pub use matrices::Ndc;
 use rara_base::error::{Error, Result};
 use rara_base::limits;
@@ -295,6 +296,29 @@ impl Camera {
     /// World to camera, as one matrix.
     pub fn world_to_camera(&self) -> DMat4 {
         DMat4::from_mat3_translation(self.rotation, -(self.rotation * self.eye))
+    }
+
+    /// The same view as a scene with this placement sees it.
+    #[must_use]
+    pub fn in_scene(&self, placement: &Placement) -> Self {
+        if *placement == Placement::IDENTITY {
+            return *self; // to the bit
+        }
+        // In perspective only directions count; the pixels of a unit depend on how large it is.
+        let unit = match self.projection {
+            Projection::Perspective => 1.0,
+            Projection::Orthographic => placement.scale(),
+        };
+        Self {
+            fx: self.fx * unit,
+            fy: self.fy * unit,
+            eye: placement.to_scene(self.eye),
+            rotation: self.rotation * DMat3::from_quat(placement.rotation()),
+            clip_near: self.clip_near.map(|depth| depth / placement.scale()),
+            clip_far: self.clip_far.map(|depth| depth / placement.scale()),
+            near_cut: self.near_cut.map(|depth| depth / placement.scale()),
+            ..*self
+        }
     }
 }
 

@@ -1,9 +1,7 @@
 //! The placement of a scene in a host's world.
 
-use glam::{DMat3, DQuat, DVec3};
+use glam::{DQuat, DVec3};
 
-use crate::camera::{Camera, Projection};
-use crate::clip::{Clip, Plane, Quadric, Surface};
 use rara_base::error::{Error, Result};
 
 /// The placement of a scene in a world, or of a [layer](crate::Layer) in its scene: points are scaled, then turned,
@@ -75,77 +73,10 @@ impl Placement {
     }
 }
 
-impl Camera {
-    /// The same view as a scene with this placement sees it.
-    #[must_use]
-    pub fn in_scene(&self, placement: &Placement) -> Self {
-        if *placement == Placement::IDENTITY {
-            return *self; // to the bit
-        }
-        // In perspective only directions count; the pixels of a unit depend on how large it is.
-        let unit = match self.projection {
-            Projection::Perspective => 1.0,
-            Projection::Orthographic => placement.scale,
-        };
-        Self {
-            fx: self.fx * unit,
-            fy: self.fy * unit,
-            eye: placement.to_scene(self.eye),
-            rotation: self.rotation * DMat3::from_quat(placement.rotation),
-            clip_near: self.clip_near.map(|depth| depth / placement.scale),
-            clip_far: self.clip_far.map(|depth| depth / placement.scale),
-            near_cut: self.near_cut.map(|depth| depth / placement.scale),
-            ..*self
-        }
-    }
-}
-
-impl Plane {
-    /// The same plane as a scene with this placement sees it.
-    #[must_use]
-    pub fn in_scene(&self, placement: &Placement) -> Self {
-        if *placement == Placement::IDENTITY {
-            return *self; // to the bit
-        }
-        let normal = placement.rotation.inverse() * self.normal();
-        let offset = self.distance(placement.position) / placement.scale;
-        Self::new(normal, offset).unwrap_or(*self)
-    }
-}
-
-impl Quadric {
-    /// The same quadric as a scene with this placement sees it.
-    #[must_use]
-    pub fn in_scene(&self, placement: &Placement) -> Self {
-        if *placement == Placement::IDENTITY {
-            return *self; // to the bit
-        }
-        self.seen_from(placement.position, placement.rotation, placement.scale)
-    }
-}
-
-impl Surface {
-    /// The same surface as a scene with this placement sees it.
-    #[must_use]
-    pub fn in_scene(&self, placement: &Placement) -> Self {
-        match self {
-            Self::Plane(plane) => plane.in_scene(placement).into(),
-            Self::Quadric(quadric) => quadric.in_scene(placement).into(),
-        }
-    }
-}
-
-impl Clip {
-    /// The same region as a scene with this placement sees it.
-    #[must_use]
-    pub fn in_scene(&self, placement: &Placement) -> Self {
-        self.map(&|surface| surface.in_scene(placement))
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{Camera, Plane, Projection, Quadric};
 
     fn placement() -> Placement {
         let turn = DQuat::from_xyzw(0.3, -0.5, 0.2, 0.9);

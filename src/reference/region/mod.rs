@@ -9,6 +9,7 @@ mod half_space;
 mod plane;
 mod quadric;
 mod reduced;
+mod region_surface;
 mod share;
 mod sides;
 mod surface;

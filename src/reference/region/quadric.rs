@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::region_surface::RegionSurface;
 use super::{HalfSpace, Side};
 use crate::real::{Real, Vec3, vec3};
 use rara_scene::Gaussians;
@@ -131,46 +132,6 @@ impl<T: Real> UnitSurface<T> {
     }
 }
 
-/// The quadric seen from inside Gaussian `index`. Its value at the centre is taken in double precision, as a plane's is.
-pub(super) fn unit_surface<T: Real>(
-    quadric: &Quadric,
-    scene: &Gaussians,
-    index: usize,
-    axes: &[Vec3<T>; 3],
-) -> UnitSurface<T> {
-    let centre = scene.positions()[index].as_dvec3();
-    let gradient = Vec3::of(quadric.gradient(centre));
-    let columns = quadric.matrix().to_cols_array_2d();
-    let element = |i: usize, j: usize| T::of(columns[j][i]);
-    let matrix = Symmetric {
-        diagonal: vec3(element(0, 0), element(1, 1), element(2, 2)),
-        across: vec3(element(0, 1), element(0, 2), element(1, 2)),
-    };
-    let turned = axes.map(|axis| matrix.times(axis));
-    UnitSurface {
-        half_space: HalfSpace {
-            normal: vec3(
-                axes[0].dot(gradient),
-                axes[1].dot(gradient),
-                axes[2].dot(gradient),
-            ),
-            offset: T::of(quadric.distance(centre)),
-        },
-        bend: Symmetric {
-            diagonal: vec3(
-                axes[0].dot(turned[0]),
-                axes[1].dot(turned[1]),
-                axes[2].dot(turned[2]),
-            ),
-            across: vec3(
-                axes[0].dot(turned[1]),
-                axes[0].dot(turned[2]),
-                axes[1].dot(turned[2]),
-            ),
-        },
-    }
-}
-
 /// How often the bound of a quadratic function over a ball is improved at most, and from which step on no more, as a share.
 const STEPS: usize = 16;
 const STEP: f64 = 0.01;
@@ -235,43 +196,93 @@ pub(super) fn gaussian_side<T: Real>(surface: &UnitSurface<T>, deviations: T) ->
     Side::Cutoff
 }
 
-/// The side of all Gaussians whose centres lie in a box and that reach at most `support` from them.
-pub(super) fn box_side(quadric: &Quadric, middle: DVec3, half: DVec3, support: f64) -> Side {
-    let half = half + support;
-    let value = quadric.distance(middle);
-    let slope = quadric.gradient(middle).abs().dot(half);
-    let matrix = quadric.matrix();
-    let diagonal = DVec3::new(matrix.x_axis.x, matrix.y_axis.y, matrix.z_axis.z);
-    let squares = half * half;
-    let across = 2.0
-        * (matrix.y_axis.x.abs() * half.x * half.y
-            + matrix.z_axis.x.abs() * half.x * half.z
-            + matrix.z_axis.y.abs() * half.y * half.z);
-    let least = value - slope + diagonal.min(DVec3::ZERO).dot(squares) - across;
-    let greatest = value + slope + diagonal.max(DVec3::ZERO).dot(squares) + across;
-    if least > 0.0 {
-        Side::Visible
-    } else if greatest < 0.0 {
-        Side::Invisible
-    } else {
-        Side::Cutoff
+impl RegionSurface for Quadric {
+    fn gaussian_side<T: Real>(
+        &self,
+        scene: &Gaussians,
+        index: usize,
+        axes: &[Vec3<T>; 3],
+        deviations: T,
+    ) -> Side {
+        gaussian_side(&self.unit_surface(scene, index, axes), deviations)
     }
-}
 
-/// The crossings of a line with the quadric: none, one or two.
-pub(super) fn crossings(quadric: &Quadric, start: DVec3, step: DVec3) -> Vec<f64> {
-    let a = step.dot(quadric.matrix() * step);
-    let b = quadric.gradient(start).dot(step);
-    let c = quadric.distance(start);
-    let square = b * b - 4.0 * a * c;
-    if square < 0.0 {
-        return Vec::new();
+    fn box_side(&self, middle: DVec3, half: DVec3, support: f64) -> Side {
+        let half = half + support;
+        let value = self.distance(middle);
+        let slope = self.gradient(middle).abs().dot(half);
+        let matrix = self.matrix();
+        let diagonal = DVec3::new(matrix.x_axis.x, matrix.y_axis.y, matrix.z_axis.z);
+        let squares = half * half;
+        let across = 2.0
+            * (matrix.y_axis.x.abs() * half.x * half.y
+                + matrix.z_axis.x.abs() * half.x * half.z
+                + matrix.z_axis.y.abs() * half.y * half.z);
+        let least = value - slope + diagonal.min(DVec3::ZERO).dot(squares) - across;
+        let greatest = value + slope + diagonal.max(DVec3::ZERO).dot(squares) + across;
+        if least > 0.0 {
+            Side::Visible
+        } else if greatest < 0.0 {
+            Side::Invisible
+        } else {
+            Side::Cutoff
+        }
     }
-    let sum = -0.5 * (b + square.sqrt().copysign(b));
-    [sum / a, c / sum]
-        .into_iter()
-        .filter(|t| t.is_finite())
-        .collect()
+
+    fn unit_surface<T: Real>(
+        &self,
+        scene: &Gaussians,
+        index: usize,
+        axes: &[Vec3<T>; 3],
+    ) -> UnitSurface<T> {
+        let centre = scene.positions()[index].as_dvec3();
+        let gradient = Vec3::of(self.gradient(centre));
+        let columns = self.matrix().to_cols_array_2d();
+        let element = |i: usize, j: usize| T::of(columns[j][i]);
+        let matrix = Symmetric {
+            diagonal: vec3(element(0, 0), element(1, 1), element(2, 2)),
+            across: vec3(element(0, 1), element(0, 2), element(1, 2)),
+        };
+        let turned = axes.map(|axis| matrix.times(axis));
+        UnitSurface {
+            half_space: HalfSpace {
+                normal: vec3(
+                    axes[0].dot(gradient),
+                    axes[1].dot(gradient),
+                    axes[2].dot(gradient),
+                ),
+                offset: T::of(self.distance(centre)),
+            },
+            bend: Symmetric {
+                diagonal: vec3(
+                    axes[0].dot(turned[0]),
+                    axes[1].dot(turned[1]),
+                    axes[2].dot(turned[2]),
+                ),
+                across: vec3(
+                    axes[0].dot(turned[1]),
+                    axes[0].dot(turned[2]),
+                    axes[1].dot(turned[2]),
+                ),
+            },
+        }
+    }
+
+    /// There are none, one or two.
+    fn crossings(&self, start: DVec3, step: DVec3) -> Vec<f64> {
+        let a = step.dot(self.matrix() * step);
+        let b = self.gradient(start).dot(step);
+        let c = self.distance(start);
+        let square = b * b - 4.0 * a * c;
+        if square < 0.0 {
+            return Vec::new();
+        }
+        let sum = -0.5 * (b + square.sqrt().copysign(b));
+        [sum / a, c / sum]
+            .into_iter()
+            .filter(|t| t.is_finite())
+            .collect()
+    }
 }
 
 #[cfg(test)]
@@ -365,7 +376,7 @@ mod tests {
         let (from, to) = (DVec3::new(-0.4, -0.3, 0.0), DVec3::new(0.5, 0.4, 0.2));
         let quadric = Quadric::cylinder(from, to, 0.3).unwrap();
         let axes = crate::footprint::half_axes::<f64>(scene.scales()[0], scene.rotations()[0]);
-        let surface = unit_surface(&quadric, &scene, 0, &axes);
+        let surface = quadric.unit_surface(&scene, 0, &axes);
         let deviations = (2.0 * (255.0 * 0.919_330_36_f64).ln()).sqrt();
         assert_eq!(gaussian_side(&surface, deviations), Side::Cutoff);
     }
@@ -384,7 +395,7 @@ mod tests {
             };
             let quadric = quadric.unwrap();
             let (middle, half) = (v(&mut random), v(&mut random).abs() * 0.3);
-            let side = box_side(&quadric, middle, half, 0.05);
+            let side = quadric.box_side(middle, half, 0.05);
             settled += u32::from(side != Side::Cutoff);
             for _ in 0..50 {
                 let at = DVec3::from_array([(); 3].map(|()| 2.0 * random.unit() - 1.0));

@@ -1,12 +1,13 @@
-//! The questions that the stages ask of a surface. Each kind answers in a file of its own.
+//! The questions that the stages ask of a surface. Each kind answers in a file of its own, as a [`RegionSurface`].
 
 use glam::DVec3;
 
-use super::quadric::Symmetric;
-use super::{HalfSpace, Side, UnitSurface, plane, quadric};
+use super::region_surface::RegionSurface;
+use super::{HalfSpace, Side, UnitSurface};
 use crate::real::{Real, Vec3};
 use rara_scene::Gaussians;
 use rara_scene::clip::Surface;
+use rara_scene::each_surface;
 use rara_scene::settings::{Mode, Settings};
 
 /// On which side of a surface Gaussian `index` is, which has the half axes `axes` and a band of `deviations` standard
@@ -28,13 +29,7 @@ pub(crate) fn surface_gaussian_side<T: Real>(
     if settings.trace_all {
         return Side::Cutoff;
     }
-    match surface {
-        Surface::Plane(plane) => plane::gaussian_side(plane, scene, index, axes, deviations),
-        Surface::Quadric(quadric) => {
-            let surface = quadric::unit_surface(quadric, scene, index, axes);
-            quadric::gaussian_side(&surface, deviations)
-        }
-    }
+    each_surface!(surface, surface => surface.gaussian_side(scene, index, axes, deviations))
 }
 
 /// On which side all Gaussians are whose centres lie in a box and that reach at most `support` from them, the layer's units.
@@ -44,10 +39,7 @@ pub(super) fn surface_box_side(
     half: DVec3,
     support: f64,
 ) -> Side {
-    match surface {
-        Surface::Plane(plane) => plane::box_side(plane, middle, half, support),
-        Surface::Quadric(quadric) => quadric::box_side(quadric, middle, half, support),
-    }
+    each_surface!(surface, surface => surface.box_side(middle, half, support))
 }
 
 /// A surface in the unit space of Gaussian `index`.
@@ -57,13 +49,7 @@ pub(crate) fn unit_surface<T: Real>(
     index: usize,
     axes: &[Vec3<T>; 3],
 ) -> UnitSurface<T> {
-    match surface {
-        Surface::Plane(plane) => UnitSurface {
-            half_space: plane::half_space(plane, scene, index, axes),
-            bend: Symmetric::zero(),
-        },
-        Surface::Quadric(quadric) => quadric::unit_surface(quadric, scene, index, axes),
-    }
+    each_surface!(surface, surface => surface.unit_surface(scene, index, axes))
 }
 
 /// The half-space that a surface keeps of Gaussian `index`, which it cuts, to first order about the Gaussian's centre.
@@ -79,8 +65,5 @@ pub(crate) fn surface_half_space<T: Real>(
 /// The crossings of the line of points `start + t step` with a surface: all such t, in any order. No shader asks this;
 /// the truth does, which uses none of the renderer's formulas.
 pub(crate) fn surface_crossings(surface: &Surface, start: DVec3, step: DVec3) -> Vec<f64> {
-    match surface {
-        Surface::Plane(plane) => plane::crossings(plane, start, step),
-        Surface::Quadric(quadric) => quadric::crossings(quadric, start, step),
-    }
+    each_surface!(surface, surface => surface.crossings(start, step))
 }

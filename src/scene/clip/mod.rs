@@ -15,6 +15,7 @@ mod shape;
 mod shape_text;
 mod solid;
 mod surface;
+mod surface_kind;
 
 #[cfg(feature = "json")]
 pub use clip_file::{NamedClip, clips_from_json, clips_to_json, load_clips};

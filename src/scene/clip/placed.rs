@@ -1,11 +1,19 @@
-//! Shapes that are moved, turned and scaled.
+//! Regions and shapes that are moved, turned and scaled.
 
 use glam::DVec3;
 
 use super::parameter::Parameter;
-use super::{Plane, Shape};
+use super::{Clip, Plane, Shape};
 use crate::placement::Placement;
 use rara_base::error::Result;
+
+impl Clip {
+    /// The same region as a scene with this placement sees it.
+    #[must_use]
+    pub fn in_scene(&self, placement: &Placement) -> Self {
+        self.map(&|surface| surface.in_scene(placement))
+    }
+}
 
 impl Shape {
     /// The same shape scaled, then turned, then moved, as a placed scene is.

@@ -2,6 +2,8 @@
 
 use glam::DVec3;
 
+use super::surface_kind::SurfaceKind;
+use crate::placement::Placement;
 use rara_base::error::{Error, Result};
 
 /// A half-space: the points x with `normal . x + offset >= 0` are visible.
@@ -64,5 +66,39 @@ impl Plane {
     /// Signed distance of a point, positive on the visible side, world units.
     pub fn distance(&self, point: DVec3) -> f64 {
         self.normal.dot(point) + self.offset
+    }
+
+    /// The same plane as a scene with this placement sees it.
+    #[must_use]
+    pub fn in_scene(&self, placement: &Placement) -> Self {
+        if *placement == Placement::IDENTITY {
+            return *self; // to the bit
+        }
+        let normal = placement.rotation().inverse() * self.normal();
+        let offset = self.distance(placement.position()) / placement.scale();
+        Self::new(normal, offset).unwrap_or(*self)
+    }
+}
+
+impl SurfaceKind for Plane {
+    fn complement(&self) -> Self {
+        self.flipped()
+    }
+
+    fn distance(&self, point: DVec3) -> f64 {
+        Plane::distance(self, point)
+    }
+
+    fn gradient(&self, _: DVec3) -> DVec3 {
+        self.normal
+    }
+
+    fn in_scene(&self, placement: &Placement) -> Self {
+        Plane::in_scene(self, placement)
+    }
+
+    fn numbers(&self) -> Vec<f64> {
+        let [x, y, z] = self.normal.to_array();
+        vec![x, y, z, self.offset]
     }
 }

@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use super::{Clip, ClipOp, Plane, Surface};
+use super::{Clip, ClipOp, Surface};
 
 /// A surface of the list. Its answer goes onto the stack; after that each of `joins` replaces the two answers on top by what
 /// they make together.
@@ -21,36 +21,6 @@ pub fn postfix(clip: &Clip) -> Vec<Step> {
     branch(clip).steps
 }
 
-/// The numbers that a surface is ordered by: its kind and what it differs in from others.
-fn numbers(surface: &Surface) -> Vec<f64> {
-    match surface {
-        Surface::Plane(plane) => vec_of(plane),
-        Surface::Quadric(q) => {
-            let mut numbers = vec![1.0];
-            numbers.extend(q.matrix().to_cols_array());
-            numbers.extend(q.linear().to_array());
-            numbers.extend(q.anchor().to_array());
-            numbers.push(q.constant());
-            numbers
-        }
-    }
-}
-
-fn vec_of(plane: &Plane) -> Vec<f64> {
-    let [x, y, z] = plane.normal().to_array();
-    vec![0.0, x, y, z, plane.offset()]
-}
-
-/// The order of surfaces, in which they stand in every list.
-fn order(one: &Surface, other: &Surface) -> Ordering {
-    let (a, b) = (numbers(one), numbers(other));
-    let pairs = a.iter().zip(&b);
-    let mut orders = pairs.map(|(a, b)| (a + 0.0).total_cmp(&(b + 0.0))); // -0 is 0
-    orders
-        .find(|o| o.is_ne())
-        .unwrap_or_else(|| a.len().cmp(&b.len()))
-}
-
 /// A part of a region as steps, and how much of the stack they need.
 struct Branch {
     steps: Vec<Step>,
@@ -59,13 +29,13 @@ struct Branch {
 
 fn branch(clip: &Clip) -> Branch {
     let mut surfaces = clip.surfaces.clone();
-    surfaces.sort_by(order);
+    surfaces.sort_by(Surface::order);
     surfaces.dedup();
     let mut branches: Vec<Branch> = clip.parts.iter().map(branch).collect();
     branches.retain(|branch| !branch.steps.is_empty());
     branches.sort_by(|a, b| {
         let surfaces = a.steps.iter().zip(&b.steps);
-        let mut orders = surfaces.map(|(a, b)| order(&a.surface, &b.surface));
+        let mut orders = surfaces.map(|(a, b)| a.surface.order(&b.surface));
         let first = orders.find(|o| o.is_ne()).unwrap_or(Ordering::Equal);
         b.depth.cmp(&a.depth).then(first)
     });

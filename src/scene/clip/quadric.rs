@@ -2,6 +2,8 @@
 
 use glam::{DMat3, DQuat, DVec3};
 
+use super::surface_kind::SurfaceKind;
+use crate::placement::Placement;
 use rara_base::error::{Error, Result};
 
 /// The side of a quadric surface that is kept: the points x with `constant + linear . p + p . matrix p >= 0`, where
@@ -157,6 +159,19 @@ impl Quadric {
             constant: self.constant / scale,
         }
     }
+
+    /// The same quadric as a scene with this placement sees it.
+    #[must_use]
+    pub fn in_scene(&self, placement: &Placement) -> Self {
+        if *placement == Placement::IDENTITY {
+            return *self; // to the bit
+        }
+        self.seen_from(
+            placement.position(),
+            placement.rotation(),
+            placement.scale(),
+        )
+    }
 }
 
 /// Axes of which the third has this direction.
@@ -190,6 +205,32 @@ pub(super) fn unit(rotation: DQuat) -> Result<DQuat> {
     }
     // The largest component is divided out first, which keeps the squares of tiny and huge ones in range.
     Ok(DQuat::from_array(rotation.to_array().map(|v| v / largest)).normalize())
+}
+
+impl SurfaceKind for Quadric {
+    fn complement(&self) -> Self {
+        self.flipped()
+    }
+
+    fn distance(&self, point: DVec3) -> f64 {
+        Quadric::distance(self, point)
+    }
+
+    fn gradient(&self, point: DVec3) -> DVec3 {
+        Quadric::gradient(self, point)
+    }
+
+    fn in_scene(&self, placement: &Placement) -> Self {
+        Quadric::in_scene(self, placement)
+    }
+
+    fn numbers(&self) -> Vec<f64> {
+        let mut numbers = self.matrix().to_cols_array().to_vec();
+        numbers.extend(self.linear().to_array());
+        numbers.extend(self.anchor().to_array());
+        numbers.push(self.constant());
+        numbers
+    }
 }
 
 #[cfg(test)]

@@ -85,16 +85,8 @@ impl SurfaceKind for Plane {
         self.flipped()
     }
 
-    fn distance(&self, point: DVec3) -> f64 {
-        Plane::distance(self, point)
-    }
-
     fn gradient(&self, _: DVec3) -> DVec3 {
         self.normal
-    }
-
-    fn in_scene(&self, placement: &Placement) -> Self {
-        Plane::in_scene(self, placement)
     }
 
     fn numbers(&self) -> Vec<f64> {

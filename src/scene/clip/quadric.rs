@@ -212,16 +212,8 @@ impl SurfaceKind for Quadric {
         self.flipped()
     }
 
-    fn distance(&self, point: DVec3) -> f64 {
-        Quadric::distance(self, point)
-    }
-
     fn gradient(&self, point: DVec3) -> DVec3 {
         Quadric::gradient(self, point)
-    }
-
-    fn in_scene(&self, placement: &Placement) -> Self {
-        Quadric::in_scene(self, placement)
     }
 
     fn numbers(&self) -> Vec<f64> {

@@ -72,12 +72,7 @@ fn the_models_frames_are_counted() {
         assert_eq!(frames(), found);
         return;
     }
-    let head = "\
-# Frames of generated scenes at 1920x1080, drawn by tiles with the kernels for GPUs, as they were counted by
-#     RARA_RENEW_BUDGET=1 cargo test --release --test gpu_cost -- --ignored the_models_frames_are_counted
-";
-    let frames: String = found.iter().map(ModelFrame::text).collect();
-    write(FRAMES_FILE, &format!("{head}{frames}"));
+    write(FRAMES_FILE, &gpu_model::text(&found));
 }
 
 fn write(file: &str, text: &str) {
@@ -204,34 +199,29 @@ fn the_models_kernels_are_as_a_gpus_compiler_estimates_them() {
     assert!(output.status.success(), "{error}");
     let found = fs::read_to_string(out).expect("what the child has found");
     if env::var_os("RARA_RENEW_BUDGET").is_some() {
-        let head = "\
-# RADV's estimates of the kernels of these frames on a Navi 31, in cycles: frame, pass, latency, inverse throughput. It is
-# written with tests/gpu_cost/budget.toml.
-";
-        write(KERNELS_FILE, &format!("{head}{found}"));
+        write(KERNELS_FILE, &found);
         return;
     }
-    let committed: Vec<String> = kernels().iter().map(Kernel::text).collect();
-    let found: Vec<&str> = found.lines().collect();
+    let (committed, found) = (kernels(), gpu_model::parse::<Kernel>(&found));
+    let names = |all: &[Kernel]| -> Vec<_> {
+        let name = |kernel: &Kernel| (kernel.pass.clone(), kernel.is_cut);
+        all.iter().map(name).collect()
+    };
     assert_eq!(
-        committed.len(),
-        found.len(),
+        names(&committed),
+        names(&found),
         "RARA_RENEW_BUDGET=1 writes them anew"
     );
-    for (committed, found) in committed.iter().zip(found) {
-        let words = |line: &str| {
-            line.split_whitespace()
-                .map(str::to_owned)
-                .collect::<Vec<_>>()
-        };
-        let (committed, found) = (words(committed), words(found));
-        assert_eq!(committed[..2], found[..2]);
+    for (committed, found) in committed.iter().zip(&found) {
         // Versions of the compiler differ.
-        for (committed, found) in committed[2..].iter().zip(&found[2..]) {
-            let [before, now] = [committed, found].map(|n| n.parse::<f64>().expect("a number"));
+        for (before, now) in [
+            (committed.latency, found.latency),
+            (committed.cycles, found.cycles),
+        ] {
             assert!(
-                (0.8..1.25).contains(&(now / before)),
-                "{found}: {before} cycles were {now}; RARA_RENEW_BUDGET=1 writes that down"
+                (0.8..1.25).contains(&(now as f64 / before as f64)),
+                "{}: {before} cycles were {now}; RARA_RENEW_BUDGET=1 writes that down",
+                found.pass
             );
         }
     }
@@ -243,7 +233,7 @@ fn the_models_kernels_are_as_a_gpus_compiler_estimates_them() {
 fn kernels_of_the_device_that_is_pretended() {
     let out = env::var_os(OUT).expect("the test that starts this one names a file");
     let scene = gpu_model::scene(2000);
-    let mut lines = String::new();
+    let mut kernels = Vec::new();
     for is_cut in [false, true] {
         // A device of its own, so that it has made no other frame's pipelines.
         let device = Device::headless_inspected(&DeviceDesc::default()).expect("a device");
@@ -267,14 +257,13 @@ fn kernels_of_the_device_that_is_pretended() {
                     .unwrap_or_else(|| panic!("{pass}: no {name}"))
                     .1
             });
-            let kernel = Kernel {
+            kernels.push(Kernel {
                 pass: pass.into(),
                 is_cut,
                 latency,
                 cycles,
-            };
-            lines += &kernel.text();
+            });
         }
     }
-    fs::write(out, lines).expect("the file is writable");
+    fs::write(out, gpu_model::text(&kernels)).expect("the file is writable");
 }

@@ -11,7 +11,8 @@ mod tables;
 
 pub use costs::{COSTS, Cost};
 pub use counted::{
-    FRAMES_FILE, KERNELS_FILE, Kernel, ModelFrame, SIZE, camera, clip, frames, kernels, scene,
+    FRAMES_FILE, KERNELS_FILE, Kernel, ModelFrame, SIZE, camera, clip, frames, kernels, parse,
+    scene, text,
 };
 pub use numbers::FrameNumbers;
 pub use tables::{rows, tables};

@@ -1,61 +1,47 @@
 //! The numbers of a frame that the costs of its passes depend on.
 
 use rara_base::limits;
+use serde::{Deserialize, Serialize};
 
 pub(super) const WORD: u64 = size_of::<u32>() as u64;
 
-/// The struct of the numbers, and the numbers by their names.
-macro_rules! numbers {
-    ($($(#[$doc:meta])* $name:ident,)+) => {
-        /// The numbers of a frame that the cost of its passes depends on.
-        #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-        pub struct FrameNumbers {
-            $($(#[$doc])* pub $name: u64,)+
-        }
-
-        impl FrameNumbers {
-            pub fn named(&mut self) -> impl Iterator<Item = (&'static str, &mut u64)> {
-                [$((stringify!($name), &mut self.$name),)+].into_iter()
-            }
-        }
-    };
-}
-
-numbers! {
-    blocks,
+/// The numbers of a frame that the cost of its passes depends on.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct FrameNumbers {
+    pub blocks: u64,
     /// Blocks that the clip may cut, or that a moved clip revisits.
-    clip_blocks,
+    pub clip_blocks: u64,
     /// Blocks that neither view nor clip settles.
-    view_blocks,
-    kept_blocks,
-    layers,
-    surfaces,
+    pub view_blocks: u64,
+    pub kept_blocks: u64,
+    pub layers: u64,
+    pub surfaces: u64,
     /// Gaussians that are drawn.
-    survivors,
+    pub survivors: u64,
     /// Survivors that are cut.
-    cut,
+    pub cut: u64,
     /// Survivors that a moved clip changes.
-    changed,
+    pub changed: u64,
     /// Passes of the survivors' sort that are not skipped.
-    sort_passes,
+    pub sort_passes: u64,
     /// The most survivors that have one depth.
-    tied,
-    tile_columns,
-    tile_rows,
+    pub tied: u64,
+    pub tile_columns: u64,
+    pub tile_rows: u64,
     /// Pairs of macro-tile and splat.
-    macro_pairs,
+    pub macro_pairs: u64,
     /// Pairs of macro-tile and splat whose tiles only the splat's mask tells.
-    masked_pairs,
+    pub masked_pairs: u64,
     /// Pairs of tile and splat.
-    pairs,
+    pub pairs: u64,
     /// Tiles that hold splats, of which several surfaces cut none.
-    filled_tiles,
+    pub filled_tiles: u64,
     /// Tiles in which several surfaces cut a splat.
-    several_tiles,
+    pub several_tiles: u64,
     /// Pairs of tile and splat that tiles load before all of their pixels are saturated.
-    loaded,
-    sh_bytes,
-    record_bytes,
+    pub loaded: u64,
+    pub sh_bytes: u64,
+    pub record_bytes: u64,
 }
 
 impl FrameNumbers {

@@ -6,7 +6,7 @@
 // True when the exact form of a splat follows each pixel's true ray. `sigma` is its largest deviation, the layer's
 // units. Where lines of sight are parallel the affine form is that already.
 bool is_beam(Footprint f, float sigma) {
-    bool is_large = f.clamped || LAYER.view.unit * sigma > FRAME.weight.beam_switch * f.view_centre.z;
+    bool is_large = f.clamped || LAYER_VIEW.unit * sigma > FRAME.weight.beam_switch * f.view_centre.z;
     return !is_orthographic() && (FRAME.weight.form == FORM_BEAM || (FRAME.weight.form == FORM_AUTO && is_large));
 }
 

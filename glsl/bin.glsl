@@ -75,13 +75,13 @@ Outline outline(Splat splat, Quad quad) {
     o.sides = middle.x + vec2(-half_sides.x, half_sides.x);
     float top = max(middle.y - half_sides.y, o.centre.y - o.half_height);
     float bottom = min(middle.y + half_sides.y, o.centre.y + o.half_height);
-    o.rows = tiles_between(top, bottom, FRAME.view.size.y, TILE_HEIGHT);
+    o.rows = tiles_between(top, bottom, VIEW.size.y, TILE_HEIGHT);
     return o;
 }
 
 // What a quad leaves of an outline, in two words: first and last (exclusive) row of tiles, and those columns of pixels.
 uvec2 bounds(Outline o) {
-    float width = FRAME.view.size.x;
+    float width = VIEW.size.x;
     vec2 columns = clamp(vec2(ceil(o.sides.x - 0.5), floor(o.sides.y - 0.5) + 1.0), 0.0, width);
     return uvec2(o.rows.x | o.rows.y << 16, to_uint(columns.x) | to_uint(columns.y) << 16);
 }
@@ -131,7 +131,7 @@ uvec2 tiles_in_row(Outline o, uint row) {
     if (o.line.y == 0.0 && least < 0.0) {
         return uvec2(0u);
     }
-    return tiles_between(left, right, FRAME.view.size.x, TILE_WIDTH);
+    return tiles_between(left, right, VIEW.size.x, TILE_WIDTH);
 }
 
 // A splat's tiles as a mask of MASK_SIDE x MASK_SIDE bits, row by row, from a first tile on. project.comp finds it once, in

@@ -33,18 +33,18 @@ uint block_clip_side(Block block, float widening) {
 vec2 range_along(vec3 relative, vec3 half_box, vec3 gradient, float size) {
     float spread = dot(abs(gradient), half_box);
     // The eye's rows and the differences are rounded.
-    float slack = LAYER.view.unit * 4e-6 * size * (length(relative) + length(half_box));
+    float slack = LAYER_VIEW.unit * 4e-6 * size * (length(relative) + length(half_box));
     return vec2(dot(gradient, relative), spread + slack);
 }
 
 vec2 depth_range(vec3 relative, vec3 half_box) {
-    return range_along(relative, half_box, LAYER.view.rotation_z.xyz, 1.0);
+    return range_along(relative, half_box, LAYER_VIEW.rotation_z.xyz, 1.0);
 }
 
 // The same of a x + b w, with the homogeneous coordinate w.
 vec2 range_over(vec3 relative, vec3 half_box, vec3 row, float a, float b) {
     float along = is_orthographic() ? 0.0 : b;
-    vec2 range = range_along(relative, half_box, a * row + along * LAYER.view.rotation_z.xyz, abs(a) + abs(along));
+    vec2 range = range_along(relative, half_box, a * row + along * LAYER_VIEW.rotation_z.xyz, abs(a) + abs(along));
     return is_orthographic() ? vec2(range.x + b, range.y + 4e-6 * abs(b)) : range;
 }
 
@@ -67,8 +67,8 @@ uint axis_side(vec3 relative, vec3 half_box, vec3 row, float focal, float centre
 
 // SIDE_CULLED where no Gaussian is in view, SIDE_VISIBLE where all are, else SIDE_CUTOFF.
 uint block_view_side(Block block) {
-    float reach = LAYER.view.unit * block.low_reach.w;
-    float sigma = LAYER.view.unit * block.high_sigma.w;
+    float reach = LAYER_VIEW.unit * block.low_reach.w;
+    float sigma = LAYER_VIEW.unit * block.high_sigma.w;
     if (reach < 0.0 || LAYER.content.visible == 0u) {
         return SIDE_CULLED;
     }
@@ -77,18 +77,18 @@ uint block_view_side(Block block) {
     vec2 depth = depth_range(relative, half_box);
     float farthest = depth.x + depth.y;
     float nearest = depth.x - depth.y;
-    if (farthest < FRAME.view.near_cut) {
+    if (farthest < VIEW.near_cut) {
         return SIDE_CULLED;
     }
-    vec4 focal = FRAME.view.focal;
-    uint x = axis_side(relative, half_box, LAYER.view.rotation_x.xyz, focal.x, focal.z, FRAME.view.size.x, FRAME.view.slope_bounds.xy, reach);
-    uint y = axis_side(relative, half_box, LAYER.view.rotation_y.xyz, focal.y, focal.w, FRAME.view.size.y, FRAME.view.slope_bounds.zw, reach);
+    vec4 focal = VIEW.focal;
+    uint x = axis_side(relative, half_box, LAYER_VIEW.rotation_x.xyz, focal.x, focal.z, VIEW.size.x, VIEW.slope_bounds.xy, reach);
+    uint y = axis_side(relative, half_box, LAYER_VIEW.rotation_y.xyz, focal.y, focal.w, VIEW.size.y, VIEW.slope_bounds.zw, reach);
     if (x == SIDE_CULLED || y == SIDE_CULLED) {
         return SIDE_CULLED;
     }
     // A layer's opacity and what makes up for the low-pass may leave some of them fainter than the block knows.
     bool is_as_opaque = LAYER.content.opacity == 1.0 && LAYER.content.antialiased == 0u;
-    bool drawable = sigma >= 0.0 && is_as_opaque && nearest > 1.0001 * FRAME.view.near_cut
+    bool drawable = sigma >= 0.0 && is_as_opaque && nearest > 1.0001 * VIEW.near_cut
         && 4.0 * sigma * max(focal.x, focal.y) < DRAWABLE_DEVIATION * homogeneous(nearest);
     return x == SIDE_VISIBLE && y == SIDE_VISIBLE && drawable ? SIDE_VISIBLE : SIDE_CUTOFF;
 }
@@ -106,13 +106,13 @@ bool may_be_beam(Block block) {
     }
     vec3 relative = eye_relative(block_middle(block));
     vec3 half_box = block_half(block);
-    vec4 bounds = FRAME.view.slope_bounds;
-    vec2 left = range_over(relative, half_box, LAYER.view.rotation_x.xyz, 1.0, -bounds.x);
-    vec2 right = range_over(relative, half_box, LAYER.view.rotation_x.xyz, 1.0, -bounds.y);
-    vec2 top = range_over(relative, half_box, LAYER.view.rotation_y.xyz, 1.0, -bounds.z);
-    vec2 bottom = range_over(relative, half_box, LAYER.view.rotation_y.xyz, 1.0, -bounds.w);
+    vec4 bounds = VIEW.slope_bounds;
+    vec2 left = range_over(relative, half_box, LAYER_VIEW.rotation_x.xyz, 1.0, -bounds.x);
+    vec2 right = range_over(relative, half_box, LAYER_VIEW.rotation_x.xyz, 1.0, -bounds.y);
+    vec2 top = range_over(relative, half_box, LAYER_VIEW.rotation_y.xyz, 1.0, -bounds.z);
+    vec2 bottom = range_over(relative, half_box, LAYER_VIEW.rotation_y.xyz, 1.0, -bounds.w);
     bool clamped = !(left.x - left.y > 0.0 && right.x + right.y < 0.0 && top.x - top.y > 0.0 && bottom.x + bottom.y < 0.0);
-    return FRAME.weight.form == FORM_BEAM || clamped || LAYER.view.unit * abs(block.high_sigma.w) > FRAME.weight.beam_switch * max(block_nearest(block), 0.0);
+    return FRAME.weight.form == FORM_BEAM || clamped || LAYER_VIEW.unit * abs(block.high_sigma.w) > FRAME.weight.beam_switch * max(block_nearest(block), 0.0);
 }
 
 // The clip's side of a block that is in view as a whole, so that no slope is clamped. Where no splat is large, it does not
@@ -121,7 +121,7 @@ uint block_side_in_view(Block block, uint side) {
     if (!may_be_beam(block)) {
         return side;
     }
-    float rest = 1.0 - 1.001 * LAYER.view.unit * block.low_reach.w / block_nearest(block);
+    float rest = 1.0 - 1.001 * LAYER_VIEW.unit * block.low_reach.w / block_nearest(block);
     if (SHORTLIST_WIDENING * rest < 1.0) {
         leave_shortlist();
     }

@@ -28,7 +28,7 @@ shared uint invisible_count;
 // True when some pixel centre lies in the splat's bounding box and in the picture.
 bool covers_a_pixel(vec2 centre, vec2 half_sides) {
     vec2 low = max(ceil(centre - half_sides - 0.5), vec2(0.0));
-    vec2 high = min(floor(centre + half_sides - 0.5), FRAME.view.size.xy - 1.0);
+    vec2 high = min(floor(centre + half_sides - 0.5), VIEW.size.xy - 1.0);
     return low.x <= high.x && low.y <= high.y;
 }
 
@@ -46,8 +46,8 @@ uint classify(uint block, uint local) {
     uint index = block * BLOCK_SIZE + local;
     Gaussian gaussian = gaussians.at[index];
     // The depth comes first: it is cheap and culls what is behind the eye. The test is negated to cull a NaN too.
-    float depth = dot(LAYER.view.rotation_z.xyz, eye_relative(gaussian.position_opacity.xyz));
-    if (!(depth >= FRAME.view.near_cut) || opacity_in_layer(gaussian) < ALPHA_MIN) {
+    float depth = dot(LAYER_VIEW.rotation_z.xyz, eye_relative(gaussian.position_opacity.xyz));
+    if (!(depth >= VIEW.near_cut) || opacity_in_layer(gaussian) < ALPHA_MIN) {
         return SIDE_CULLED;
     }
     Footprint f = footprint(gaussian);

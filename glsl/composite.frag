@@ -23,7 +23,7 @@ vec3 linear_light(vec3 stored) {
 
 void main() {
     vec2 pixel_centre = gl_FragCoord.xy - push.params.origin;
-    uvec2 size = uvec2(FRAME.view.size.xy);
+    uvec2 size = uvec2(VIEW.size.xy);
     uvec2 pixel = min(uvec2(pixel_centre), size - 1u);
     uvec2 tile = pixel / uvec2(TILE_WIDTH, TILE_HEIGHT) % QUAD_TILES;
     uint bit = tile.y * QUAD_TILES + tile.x;

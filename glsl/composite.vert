@@ -30,5 +30,5 @@ void main() {
     // between two quads have no area. A quad that holds nothing has no area either.
     uint corner = filled == uvec2(0u) ? 0u : uint(clamp(gl_VertexIndex % 6 - 1, 0, 3));
     vec2 pixel = vec2((first + QUAD_TILES * uvec2(corner & 1u, corner >> 1u)) * uvec2(TILE_WIDTH, TILE_HEIGHT));
-    gl_Position = vec4(2.0 * pixel * FRAME.view.size.zw - 1.0, 0.0, 1.0);
+    gl_Position = vec4(2.0 * pixel * VIEW.size.zw - 1.0, 0.0, 1.0);
 }

@@ -36,7 +36,7 @@ Quad box(Splat splat) {
     // By the ratio, since the square of what is left of a huge splat's conic is 0.
     vec2 half_sides = extent * vec2(1.0 / conic.x, length(vec2(1.0, conic.y / conic.x)) / conic.z);
     vec2 low = max(centre - vec2(widened(half_sides.x), widened(half_sides.y)), vec2(0.0));
-    vec2 high = max(low, min(centre + vec2(widened(half_sides.x), widened(half_sides.y)), FRAME.view.size.xy));
+    vec2 high = max(low, min(centre + vec2(widened(half_sides.x), widened(half_sides.y)), VIEW.size.xy));
     // Corners are sums with the centre, which far outside the picture is known to a few units in its last place.
     vec2 half_size = 0.5 * (high - low) + 1.0 + 1e-6 * abs(centre);
     return Quad(0.5 * (low + high) - centre, vec2(half_size.x, 0.0), vec2(0.0, half_size.y));
@@ -51,7 +51,7 @@ vec4 corner(Splat splat, Quad quad, uint number) {
     float first = (number & 1u) == 0u ? -1.0 : 1.0;
     float second = (number & 2u) == 0u ? -1.0 : 1.0;
     vec2 at = splat.centre_conic.xy + quad.middle + first * quad.first + second * quad.second;
-    return vec4(2.0 * at * FRAME.view.size.zw - 1.0, DEPTH ? host_depth(splat.curvature_depth.w) : 0.0, 1.0);
+    return vec4(2.0 * at * VIEW.size.zw - 1.0, DEPTH ? host_depth(splat.curvature_depth.w) : 0.0, 1.0);
 }
 
 // The centre in the coordinates of gl_FragCoord, and k0 k1.

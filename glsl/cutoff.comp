@@ -117,7 +117,7 @@ CurveSource source_of_footprint(Footprint f) {
     source.h2 = vec4(vec3(0.0), f.low_pass);
     source.half_space = vec4(0.0);
     source.bends = true;
-    source.centre = f.screen_centre - FRAME.view.focal.zw;
+    source.centre = f.screen_centre - VIEW.focal.zw;
     source.conic = conic_of(f);
     return source;
 }
@@ -213,11 +213,11 @@ void main() {
     }
 
     // The weight follows true rays. The gradients at a pixel are these less the pixel's position times `lean`.
-    vec3 b1 = FRAME.view.focal.x / f.w * f.m1;
-    vec3 b2 = FRAME.view.focal.y / f.w * f.m2;
+    vec3 b1 = VIEW.focal.x / f.w * f.m1;
+    vec3 b2 = VIEW.focal.y / f.w * f.m2;
     vec3 lean = f.w_gradient / f.w;
     // They grow with the distance from the principal point, so the scale is the farthest pixel's.
-    vec2 far = max(abs(FRAME.view.focal.zw), abs(FRAME.view.size.xy - FRAME.view.focal.zw));
+    vec2 far = max(abs(VIEW.focal.zw), abs(VIEW.size.xy - VIEW.focal.zw));
     float size = max(largest(b1) + far.x * largest(lean), largest(b2) + far.y * largest(lean));
     // Mode `rara` has no low-pass to keep in proportion, so it also scales up what is tiny.
     float scale = 1.0 / max(size, FRAME.region.mode == MODE_RARA ? 1e-30 : 1.0);
@@ -233,7 +233,7 @@ void main() {
         if (COMBINED && is_combined) {
             source.surface = first_entry(base);
         }
-        source.centre = f.screen_centre - FRAME.view.focal.zw;
+        source.centre = f.screen_centre - VIEW.focal.zw;
         source.conic = conic_of(f);
         if (write_curve(base, source, opacity_on_screen(f, gaussian))) {
             return;

@@ -42,24 +42,24 @@ mat3 rotation_matrix(vec4 q) {
 
 // The centre relative to the eye, the layer's axes and units.
 vec3 eye_relative(vec3 position) {
-    return two_float_difference(position, LAYER.view.eye_high.xyz, LAYER.view.eye_low.xyz);
+    return two_float_difference(position, LAYER_VIEW.eye_high.xyz, LAYER_VIEW.eye_low.xyz);
 }
 
 vec3 to_view(vec3 relative) {
-    return vec3(dot(LAYER.view.rotation_x.xyz, relative), dot(LAYER.view.rotation_y.xyz, relative),
-                dot(LAYER.view.rotation_z.xyz, relative));
+    return vec3(dot(LAYER_VIEW.rotation_x.xyz, relative), dot(LAYER_VIEW.rotation_y.xyz, relative),
+                dot(LAYER_VIEW.rotation_z.xyz, relative));
 }
 
 // The centre in the camera's frame.
 vec3 view_position(vec3 position, vec3 relative) {
-    if (FRAME.view.precise_view == 0u) {
+    if (VIEW.precise_view == 0u) {
         return to_view(relative);
     }
-    vec3 high = LAYER.view.eye_high.xyz;
-    vec3 low = LAYER.view.eye_low.xyz;
-    return vec3(two_float_view(LAYER.view.rotation_x.xyz, LAYER.view.rotation_low[0].xyz, position, high, low),
-                two_float_view(LAYER.view.rotation_y.xyz, LAYER.view.rotation_low[1].xyz, position, high, low),
-                two_float_view(LAYER.view.rotation_z.xyz, LAYER.view.rotation_low[2].xyz, position, high, low));
+    vec3 high = LAYER_VIEW.eye_high.xyz;
+    vec3 low = LAYER_VIEW.eye_low.xyz;
+    return vec3(two_float_view(LAYER_VIEW.rotation_x.xyz, LAYER_VIEW.rotation_low[0].xyz, position, high, low),
+                two_float_view(LAYER_VIEW.rotation_y.xyz, LAYER_VIEW.rotation_low[1].xyz, position, high, low),
+                two_float_view(LAYER_VIEW.rotation_z.xyz, LAYER_VIEW.rotation_low[2].xyz, position, high, low));
 }
 
 // The homogeneous coordinate of what is as deep as this.
@@ -69,8 +69,8 @@ float homogeneous(float depth) {
 
 // Screen gradients at a slope, unscaled.
 void screen_gradients(Footprint f, vec2 slope, out vec3 b1, out vec3 b2) {
-    b1 = FRAME.view.focal.x / f.w * (f.m1 - slope.x * f.w_gradient);
-    b2 = FRAME.view.focal.y / f.w * (f.m2 - slope.y * f.w_gradient);
+    b1 = VIEW.focal.x / f.w * (f.m1 - slope.x * f.w_gradient);
+    b2 = VIEW.focal.y / f.w * (f.m2 - slope.y * f.w_gradient);
 }
 
 mat3 half_axes(Gaussian gaussian) {
@@ -83,14 +83,14 @@ Footprint footprint(Gaussian gaussian) {
     f.relative = eye_relative(gaussian.position_opacity.xyz);
     f.view_centre = view_position(gaussian.position_opacity.xyz, f.relative);
     f.axes = half_axes(gaussian);
-    f.m1 = LAYER.view.rotation_x.xyz * f.axes;
-    f.m2 = LAYER.view.rotation_y.xyz * f.axes;
-    f.m3 = LAYER.view.rotation_z.xyz * f.axes;
+    f.m1 = LAYER_VIEW.rotation_x.xyz * f.axes;
+    f.m2 = LAYER_VIEW.rotation_y.xyz * f.axes;
+    f.m3 = LAYER_VIEW.rotation_z.xyz * f.axes;
     f.w = homogeneous(f.view_centre.z);
     f.w_gradient = is_orthographic() ? vec3(0.0) : f.m3;
     vec2 slope = f.view_centre.xy / f.w;
-    f.screen_centre = FRAME.view.focal.xy * slope + FRAME.view.focal.zw;
-    f.slope = clamp(slope, FRAME.view.slope_bounds.xz, FRAME.view.slope_bounds.yw);
+    f.screen_centre = VIEW.focal.xy * slope + VIEW.focal.zw;
+    f.slope = clamp(slope, VIEW.slope_bounds.xz, VIEW.slope_bounds.yw);
     f.clamped = f.slope != slope;
     screen_gradients(f, f.slope, f.b1, f.b2);
     f.scale = 1.0 / max(1.0, max(largest(f.b1), largest(f.b2)));

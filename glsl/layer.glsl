@@ -11,6 +11,7 @@ layout(constant_id = 9) const bool LAYERED = false;
 uint layer_number = 0u;
 
 #define LAYER frame.layers[layer_number]
+#define LAYER_VIEW LAYER.views[EYE]
 
 // Makes LAYER that of a block.
 void enter_layer_of_block(uint block) {

@@ -20,6 +20,8 @@ const float BEAM_SWITCH = 0.005;
 const float WIDENING_REST = 0.05;
 // A plane this many deviations beyond the eye cuts off no more than 2e-9 of what is in front of the eye.
 const float BEYOND_EYE = 6.0;
+// The most eyes that a frame has a picture of.
+const uint MAX_VIEWS = 1u;
 // The most coefficients that a colour channel has: those of degree 3.
 const uint MAX_SH_COEFFICIENTS = 16u;
 // Opacity below which a splat is invisible everywhere, and alpha below which a cut splat's weight is not computed: 1/255.

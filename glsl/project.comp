@@ -34,21 +34,21 @@ BUFFER(writeonly, 9, uvec4, tile_masks)
 
 vec3 colour(uint index, vec3 direction) {
     float basis[MAX_SH_COEFFICIENTS];
-    sh_basis(direction, FRAME.view.sh_degree, basis);
+    sh_basis(direction, VIEW.sh_degree, basis);
     uint base = index * sh_words(FRAME.scene.sh_coefficients);
     vec3 sum = 0.5 + basis[0] * sh_constant(base);
     // Each degree has its own loop, since the compiler unrolls loops of a fixed length.
-    if (FRAME.view.sh_degree > 0u) {
+    if (VIEW.sh_degree > 0u) {
         mat3 units = sh_units(base);
         for (uint i = 1u; i < 4u; i++) {
             sum += basis[i] * sh_coefficient(base, units[0], i);
         }
-        if (FRAME.view.sh_degree > 1u) {
+        if (VIEW.sh_degree > 1u) {
             for (uint i = 4u; i < 9u; i++) {
                 sum += basis[i] * sh_coefficient(base, units[1], i);
             }
         }
-        if (FRAME.view.sh_degree > 2u) {
+        if (VIEW.sh_degree > 2u) {
             for (uint i = 9u; i < 16u; i++) {
                 sum += basis[i] * sh_coefficient(base, units[2], i);
             }
@@ -85,7 +85,7 @@ void main() {
     }
     splat.centre_conic = vec4(f.screen_centre, conic.xy);
     splat.conic_cut = vec4(conic.z, opacity, weight.linear.xy);
-    vec3 direction = is_orthographic() ? LAYER.view.rotation_z.xyz : f.relative;
+    vec3 direction = is_orthographic() ? LAYER_VIEW.rotation_z.xyz : f.relative;
     vec3 shown = NUMBERED ? numbers(floatBitsToUint(gaussian.scale.w))
                           : colour(index, normalize(direction / largest(direction)));
     splat.colour_cut = vec4(shown, weight.linear.z);

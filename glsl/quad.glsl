@@ -70,7 +70,7 @@ Quad quad_around(Footprint f, float extent, Carried weight) {
     if (max(largest(vec3(quad.first, 0.0)), largest(vec3(quad.second, 0.0))) > QUAD_MAX_EXTENT) {
         vec2 box = box_half_sides(f, extent);
         vec2 low = max(f.screen_centre - vec2(widened(box.x), widened(box.y)), vec2(0.0));
-        vec2 high = min(f.screen_centre + vec2(widened(box.x), widened(box.y)), FRAME.view.size.xy);
+        vec2 high = min(f.screen_centre + vec2(widened(box.x), widened(box.y)), VIEW.size.xy);
         // A centre far outside the picture is known to a few units in its last place only, and the corners are sums
         // with it.
         vec2 half_sides = 0.5 * (high - low) + 1.0 + 1e-6 * abs(f.screen_centre);

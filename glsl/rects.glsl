@@ -38,7 +38,7 @@ Rect rect_of_mask(uint origin, uvec2 mask) {
 // That around the tiles of an outline, from its bounds.
 Rect rect_of_bounds(uvec2 bounds) {
     vec2 sides = sides_of(bounds);
-    return rect_between(tiles_between(sides.x, sides.y, FRAME.view.size.x, TILE_WIDTH), rows_of(bounds));
+    return rect_between(tiles_between(sides.x, sides.y, VIEW.size.x, TILE_WIDTH), rows_of(bounds));
 }
 
 // A rectangle's word: first column and row, one less than columns and rows. Pictures have up to 4096 tiles a side.

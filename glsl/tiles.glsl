@@ -196,7 +196,7 @@ void main() {
     if (begin == end) {
         return; // nothing reads its pixels
     }
-    uvec2 size = uvec2(FRAME.view.size.xy);
+    uvec2 size = uvec2(VIEW.size.xy);
     uvec2 pixel = tile_at * uvec2(TILE_WIDTH, TILE_HEIGHT) + gl_LocalInvocationID.xy * uvec2(1u, ROWS);
     pixel_centre = vec2(pixel) + 0.5;
     vec2 tile_middle = (vec2(tile_at) + 0.5) * vec2(TILE_WIDTH, TILE_HEIGHT);

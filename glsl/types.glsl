@@ -16,7 +16,7 @@ struct SceneData {
     uint layer_count; // layers of the scene, at least one
 };
 
-// The camera's picture. Where the camera stands is in each layer's view, in the layer's own space.
+// The picture of an eye. Where the eye stands is in each layer's views, in the layer's own space.
 struct ViewData {
     vec4 focal; // fx, fy, px, or px a unit of the scene in an orthographic view; cx, cy, px
     vec4 slope_bounds; // lowest and highest x/z, lowest and highest y/z at which the Jacobian is evaluated
@@ -71,7 +71,7 @@ struct RegionData {
 // The values that are constant in a frame.
 struct FrameData {
     SceneData scene; // the scene's sizes
-    ViewData view; // the camera
+    ViewData views[MAX_VIEWS]; // an eye's each
     OrderData order; // the sort
     TilesData tiles; // the tiles
     RoomData room; // the room that there is
@@ -79,7 +79,7 @@ struct FrameData {
     RegionData region; // what the layers' regions have in common
 };
 
-// The camera as a layer sees it that is placed in the scene. The rows are the layer's rotation times its unit, so that what
+// An eye as a layer sees it that is placed in the scene. The rows are the layer's rotation times its unit, so that what
 // is computed in the camera's frame is in the scene's units, and what is computed before that is in the layer's own.
 struct LayerView {
     vec4 rotation_x; // layer to camera, first row; w unused
@@ -112,7 +112,7 @@ struct LayerRegion {
 
 // A layer of the scene in a frame: a struct for each reason to change, as above.
 struct LayerData {
-    LayerView view; // where the camera is
+    LayerView views[MAX_VIEWS]; // where each eye is
     LayerContent content; // its Gaussians
     LayerRegion region; // what is kept of them
 };

@@ -19,6 +19,8 @@ pub const BEAM_SWITCH: f32 = 0.005;
 pub const WIDENING_REST: f32 = 0.05;
 /// A plane this many deviations beyond the eye cuts off no more than 2e-9 of what is in front of the eye.
 pub const BEYOND_EYE: f32 = 6.0;
+/// The most eyes that a frame has a picture of.
+pub const MAX_VIEWS: u32 = 1;
 /// The most coefficients that a colour channel has: those of degree 3.
 pub const MAX_SH_COEFFICIENTS: u32 = 16;
 /// Opacity below which a splat is invisible everywhere, and alpha below which a cut splat's weight is not computed: 1/255.

@@ -13,16 +13,19 @@ use crate::passes::stage::{Stage, Targets};
 use crate::passes::storage::Storage;
 use crate::passes::work::Work;
 use crate::passes::{
-    bin, blocks, classify, clip, compact, cutoff, depth, project, reclip, shared, sort, splat,
-    tiles,
+    bin, blocks, classify, clip, compact, composite, cutoff, depth, project, reclip, shared, sort,
+    splat, tiles,
 };
 use rara_gpu::{Buffer, Recorder};
 
-/// All stages in the order in which a frame has them. Nothing waits or is read back in between; each stage's work follows
-/// from what the earlier ones left on the device.
-pub(crate) static STAGES: [&Stage; 13] = [
+/// The stages whose results are the same for each eye. They come before those of an eye.
+static OF_SCENE: [&Stage; 1] = [
     // Finds on which side of the clip each block of Gaussians lies, and each Gaussian of the blocks that it cuts.
     &clip::STAGE,
+];
+
+/// The stages that see with an eye.
+static OF_VIEW: [&Stage; 12] = [
     // Finds which blocks are in view.
     &blocks::STAGE,
     // Finds which Gaussians are in view, in the blocks that are so in part.
@@ -49,6 +52,12 @@ pub(crate) static STAGES: [&Stage; 13] = [
     &depth::STAGE,
 ];
 
+/// All stages in the order in which a frame has them. Nothing waits or is read back in between; each stage's work follows
+/// from what the earlier ones left on the device.
+fn stages() -> impl Iterator<Item = &'static Stage> {
+    OF_SCENE.iter().chain(&OF_VIEW).copied()
+}
+
 /// The name of the draw, the last step, which a frame does without where the tiles' picture is the picture.
 pub(crate) const DRAW: &str = "splat";
 
@@ -57,7 +66,7 @@ const FEW_LAYERS: usize = 4096;
 
 /// The buffers of all stages.
 static MEMORY: LazyLock<Vec<&'static Storage>> = LazyLock::new(|| {
-    let of_stages = STAGES.iter().flat_map(|stage| stage.memory);
+    let of_stages = stages().flat_map(|stage| stage.memory);
     let all: Vec<_> = [shared::STORAGES]
         .iter()
         .chain(of_stages)
@@ -121,7 +130,7 @@ pub(crate) fn record(
 
 fn record_stages(recording: &mut Recording<'_, '_>) {
     let plan = recording.plan;
-    for stage in STAGES.iter().filter(|stage| (stage.needed)(plan)) {
+    for stage in stages().filter(|stage| (stage.needed)(plan)) {
         recording.stage(stage.name, stage.record);
     }
 }
@@ -148,7 +157,7 @@ impl Plan {
             need(splat::draw(self, targets.colour).key());
         }
         if self.is_drawn && self.is_tiled() {
-            need(tiles::composite(self, targets).key());
+            need(composite::draw(self, targets).key());
         }
         if let Some(attachments) = targets.expected_depth {
             need(depth::draw(self, attachments).key());
@@ -158,12 +167,8 @@ impl Plan {
     /// The stages that this frame does not need, among those of a whole one.
     pub(crate) fn skipped(&self) -> Vec<&'static str> {
         let is_empty = self.gaussians() == 0;
-        let missed = |stage: &&&Stage| (stage.missed)(self) && (is_empty || !(stage.needed)(self));
-        let mut skipped: Vec<_> = STAGES
-            .iter()
-            .filter(missed)
-            .map(|stage| stage.name)
-            .collect();
+        let missed = |stage: &&Stage| (stage.missed)(self) && (is_empty || !(stage.needed)(self));
+        let mut skipped: Vec<_> = stages().filter(missed).map(|stage| stage.name).collect();
         skipped.extend((is_empty || !self.is_drawn).then_some(DRAW));
         skipped
     }

@@ -92,7 +92,7 @@ impl Plan {
     /// things in the same buffers.
     fn sees_like(&self, other: &Self) -> bool {
         same(&self.data.scene, &other.data.scene)
-            && same(&self.data.view, &other.data.view)
+            && same(&self.data.views, &other.data.views)
             && same(&self.data.order, &other.data.order)
             && same(&self.data.tiles, &other.data.tiles)
             && self.layers.contain_like(&other.layers)

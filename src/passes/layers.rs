@@ -45,7 +45,7 @@ impl Layers {
             };
             if layer.is_visible() {
                 let placement = &layer.state.placement;
-                data.view = layer_view(&camera.in_scene(placement), placement.scale());
+                data.views = [layer_view(&camera.in_scene(placement), placement.scale())];
                 let clip = camera.sees_of(layer.clip().unwrap_or(clip))?;
                 // Quadrics are packed relative to a point among the layer's own centres.
                 let is_anchored_alike =
@@ -109,7 +109,7 @@ impl Layers {
 
     /// True when other layers have the camera where these have it.
     pub(super) fn see_like(&self, other: &Self) -> bool {
-        self.are_like(other, |layer| layer.view)
+        self.are_like(other, |layer| layer.views)
     }
 
     /// True when the same is kept of other layers.

@@ -1,4 +1,4 @@
-//! The stages of the frame, one file each: buffers in, buffers out. [`frame::STAGES`] lists them in order.
+//! The stages of the frame, one file each: buffers in, buffers out. [`frame`] lists them in order.
 
 mod bin;
 mod block_list;
@@ -8,6 +8,7 @@ mod buffers;
 mod classify;
 mod clip;
 mod compact;
+pub(crate) mod composite;
 mod cutoff;
 pub(crate) mod depth;
 mod depth_keys;

@@ -10,7 +10,9 @@ use crate::passes::tile_picture::TilePixels;
 use crate::passes::tile_work::TileWork;
 use crate::passes::view::view_data;
 use crate::passes::work::Work;
-use crate::types::{self, FrameData, OrderData, RoomData, SceneData, TilesData, WeightData};
+use crate::types::{
+    self, FrameData, OrderData, RoomData, SceneData, TilesData, ViewData, WeightData,
+};
 use ash::vk;
 use rara_base::counted::counted;
 use rara_base::error::{Error, Result};
@@ -152,12 +154,12 @@ impl Plan {
                     sh_coefficients: (scene.sh_degree + 1) * (scene.sh_degree + 1),
                     layer_count: scene.layers.len() as u32,
                 },
-                view: view_data(
+                views: [view_data(
                     camera,
                     scene.whole.unwrap_or(camera),
                     keys.farthest(),
                     degree.min(scene.sh_degree),
-                ),
+                )],
                 order: OrderData {
                     key_near: keys.near,
                     key_span: keys.span,
@@ -182,7 +184,9 @@ impl Plan {
         let mut plan = self.clone();
         let runs = self.data.tiles.span_runs;
         plan.data.tiles = tiles_data(vk::Extent2D { width, height }, runs, settings)?;
-        plan.data.view.size[..2].copy_from_slice(&[width as f32, height as f32]);
+        for view in &mut plan.data.views {
+            view.size[..2].copy_from_slice(&[width as f32, height as f32]);
+        }
         Ok(plan)
     }
 
@@ -220,15 +224,21 @@ impl Plan {
         self.data.region.mode
     }
 
+    /// The picture of the frame's eye.
+    fn view(&self) -> &ViewData {
+        let [view] = &self.data.views;
+        view
+    }
+
     /// Width and height of the camera's picture, px.
     pub(crate) fn size(&self) -> [f32; 2] {
-        let [width, height, ..] = self.data.view.size;
+        let [width, height, ..] = self.view().size;
         [width, height]
     }
 
     /// The camera's principal point in an attachment in which the viewport begins at `origin`, px.
     pub(crate) fn principal_point(&self, origin: [f32; 2]) -> [f32; 2] {
-        let [_, _, cx, cy] = self.data.view.focal;
+        let [_, _, cx, cy] = self.view().focal;
         [cx + origin[0], cy + origin[1]]
     }
 

@@ -1,25 +1,22 @@
 //! Stage `tiles`, the tile rasteriser: a compute shader blends the splats of each tile of pixels, front to back, until the
-//! tile is saturated. A draw blends their picture onto what the host has drawn; where nothing lies below, theirs is the
-//! picture. A frame whose pairs have no room is drawn as quads instead.
-
-use std::mem::offset_of;
+//! tile is saturated. [`composite`](super::composite) blends their picture onto what the host has drawn; where nothing lies
+//! below, theirs is the picture. A frame whose pairs have no room is drawn as quads instead.
 
 use crate::passes::bin::{lists, macro_tiles};
 use crate::passes::buffers::Buffers;
-use crate::passes::pipelines::{Draw, Kernel, Pipelines};
+use crate::passes::pipelines::Kernel;
 use crate::passes::plan::Plan;
 use crate::passes::recording::{Recording, counted};
-use crate::passes::shaders::{composite, tiles};
-use crate::passes::stage::{Stage, Targets};
+use crate::passes::shaders::tiles;
+use crate::passes::stage::Stage;
 use crate::passes::storage::{buffers, memory};
 use crate::passes::tile_picture::TilePicture;
 use crate::passes::weight::{self, Weight};
 use crate::passes::work::Work;
 use crate::passes::{cutoff, project, reclip, shared};
-use crate::types::{self, FrameCounts};
+use crate::types;
 use rara_base::limits;
-use rara_gpu::{Buffer, DeviceShape, Drawer};
-use rara_scene::settings::Show;
+use rara_gpu::{Buffer, DeviceShape};
 
 pub(crate) static STAGE: Stage = Stage {
     name: "tiles",
@@ -139,37 +136,4 @@ pub(crate) fn picture(b: &Buffers) -> TilePicture {
 /// The host's depth for tiles.
 pub(crate) fn occluders(b: &Buffers) -> &Buffer {
     b.get(&MEMORY.occluders)
-}
-
-/// The draw of the tiles' picture, in linear light where a target asks for it and colours are shown.
-pub(crate) fn composite(plan: &Plan, targets: Targets) -> Draw<composite::Program> {
-    let shows_colours = matches!(plan.way.show, Show::Colour | Show::Weight);
-    let constants = composite::Constants {
-        linear: targets.linear && shows_colours,
-    };
-    let shaders = [&composite::VERT, &composite::FRAG];
-    Draw::new(shaders, constants, targets.colour, false)
-}
-
-/// Blends the tiles' picture onto what the host has drawn, inside the host's rendering scope. `origin` is where its viewport
-/// begins, px.
-pub(crate) fn record_composite(
-    drawer: &mut Drawer<'_>,
-    pipelines: &Pipelines,
-    (plan, b): (&Plan, &Buffers),
-    targets: Targets,
-    origin: [f32; 2],
-) {
-    let buffers = buffers!(composite {
-        shared::MEMORY => [frame],
-        lists::MEMORY => [tile_begins];
-        picture: &MEMORY.tile_picture,
-    });
-    let args = (
-        b.get(&shared::MEMORY.counts),
-        offset_of!(FrameCounts, composite) as u64,
-    );
-    let params = composite::Params { origin };
-    let buffers = (buffers, |storage| b.get(storage));
-    composite(plan, targets).draw(pipelines, drawer, buffers, params, args);
 }

@@ -1,4 +1,4 @@
-//! The view in a frame's constants: the camera's picture, and where each layer has the camera.
+//! A view in a frame's constants: the picture of an eye, and where each layer has the eye.
 
 use glam::DVec3;
 

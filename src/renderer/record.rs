@@ -6,7 +6,7 @@ use ash::vk;
 
 use super::frame::FrameState;
 use super::{ConfiguredFrame, PreparedFrame, Renderer, out_of_order};
-use crate::passes::{self, Kept, Resources, SceneBuffers, Work, tiles};
+use crate::passes::{self, Kept, Resources, SceneBuffers, Work, composite, tiles};
 use rara_base::error::Result;
 use rara_gpu::{DepthImage, Drawer, Recorder};
 
@@ -136,7 +136,7 @@ impl Renderer {
             let frame = (plan, buffers);
             passes::splat::record(drawer, pipelines, frame, targets.colour, origin, map);
             if plan.is_tiled() {
-                tiles::record_composite(drawer, pipelines, frame, targets, origin);
+                composite::record(drawer, pipelines, frame, targets, origin);
             }
         });
         Ok(())

@@ -137,7 +137,7 @@ fn loaded(splats: &[Splat], drawn: &Drawn, data: &FrameData) -> u64 {
     let begins: Vec<u32> = bytemuck::pod_collect_to_vec(&drawn.buffer("tile_begins"));
     let tiles = &data.tiles;
     let [width, height] = [limits::TILE_WIDTH, limits::TILE_HEIGHT];
-    let [columns, rows] = [data.view.size[0], data.view.size[1]];
+    let [columns, rows] = [data.views[0].size[0], data.views[0].size[1]];
     let mut sum = 0;
     for tile in 0..tiles.tile_count {
         let corner = [

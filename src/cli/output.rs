@@ -12,19 +12,7 @@ use serde::Serialize;
 
 use super::values::STANDARD;
 
-pub(super) use super::progress::{ProgressLine, Spinner};
-
-static QUIET: AtomicBool = AtomicBool::new(false);
-
-/// From now on only what was asked for is printed, and why something failed.
-pub(super) fn be_quiet() {
-    QUIET.store(true, Ordering::Relaxed);
-}
-
-/// True when nobody wants to be told anything.
-pub(super) fn is_quiet() -> bool {
-    QUIET.load(Ordering::Relaxed)
-}
+pub(super) use super::progress::{ProgressLine, Spinner, be_quiet, is_quiet};
 
 /// Prints a line for people, unless they want none.
 pub(super) fn say(line: impl Display) {

@@ -1,13 +1,24 @@
 //! What moves on a terminal while something takes longer than a moment; elsewhere there is nothing to see.
 
 use std::sync::LazyLock;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError, Sender};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
 use indicatif::{MultiProgress, ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-use super::output;
+static QUIET: AtomicBool = AtomicBool::new(false);
+
+/// From now on only what was asked for is printed, and why something failed.
+pub(super) fn be_quiet() {
+    QUIET.store(true, Ordering::Relaxed);
+}
+
+/// True when nobody wants to be told anything.
+pub(super) fn is_quiet() -> bool {
+    QUIET.load(Ordering::Relaxed)
+}
 
 /// Bars and spinners stay hidden for the first half second, so that quick work leaves no flicker.
 const MOMENT: Duration = Duration::from_millis(500);
@@ -27,7 +38,7 @@ struct Sign {
 
 impl Sign {
     fn new(bar: ProgressBar) -> Self {
-        if output::is_quiet() {
+        if is_quiet() {
             return Self {
                 alive: None,
                 shown: None,

@@ -12,7 +12,6 @@ use rara::{Bounds, Clip, Error, Gaussians, Layer, LayerState, Placement, Result,
 use serde::Deserialize;
 
 use super::region::Region;
-use super::select::Selection;
 
 /// The longest list that is read.
 pub(super) const MOST_BYTES: u64 = 16 << 20;
@@ -29,6 +28,30 @@ pub(super) struct LayerEntry {
     pub(super) clip: Option<LayerClip<Region>>,
     /// The layers that take their splats from it, in the order in which they do so.
     pub(super) selected: Vec<Selection>,
+}
+
+/// A layer that a selection makes of what a predicate takes of another.
+#[derive(Debug, Clone)]
+pub(super) struct Selection {
+    /// What it takes from: 0 for the file's own layer, or one more than the number of an earlier selection of the file.
+    pub(super) from: usize,
+    pub(super) predicate: Region<Predicate>,
+    pub(super) name: String,
+    pub(super) state: LayerState,
+    pub(super) clip: Option<LayerClip<Region>>,
+}
+
+impl Selection {
+    /// A selection from what a file's own layer is left with, whose state and clip it takes.
+    pub(super) fn new(name: String, predicate: Region<Predicate>, entry: &LayerEntry) -> Self {
+        Self {
+            from: 0,
+            predicate,
+            name,
+            state: entry.state,
+            clip: entry.clip.clone(),
+        }
+    }
 }
 
 /// What of the entry's layers is known once all files are read.

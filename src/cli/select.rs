@@ -1,36 +1,12 @@
 //! `--select`: splats of a layer that become a layer of their own.
 
+use rara::Gaussians;
 use rara::scene::{Part, Predicate, Property};
-use rara::{Gaussians, LayerState};
 
 use super::failure::Failure;
 use super::region::Region;
-use super::scene_file::{LayerClip, LayerEntry};
+use super::scene_file::{LayerEntry, Selection};
 use super::values;
-
-/// A layer that a selection makes of what a predicate takes of another.
-#[derive(Debug, Clone)]
-pub(super) struct Selection {
-    /// What it takes from: 0 for the file's own layer, or one more than the number of an earlier selection of the file.
-    from: usize,
-    pub(super) predicate: Region<Predicate>,
-    pub(super) name: String,
-    pub(super) state: LayerState,
-    pub(super) clip: Option<LayerClip<Region>>,
-}
-
-impl Selection {
-    /// A selection from what a file's own layer is left with, whose state and clip it takes.
-    pub(super) fn new(name: String, predicate: Region<Predicate>, entry: &LayerEntry) -> Self {
-        Self {
-            from: 0,
-            predicate,
-            name,
-            state: entry.state,
-            clip: entry.clip.clone(),
-        }
-    }
-}
 
 /// Adds the selection `[LAYER/]NAME=PREDICATE` to each layer that it takes from: every file's, or those of a name.
 pub(super) fn add(entries: &mut [LayerEntry], text: &str) -> Result<(), Failure> {

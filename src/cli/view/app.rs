@@ -17,21 +17,13 @@ use winit::window::{Window, WindowId};
 use super::action::Action;
 use super::display::without_place;
 use super::input::Input;
-use super::loading::{Load, LoadedWindow};
+use super::loading::Load;
 use super::lost;
 use super::scenery::Manner;
 use super::script;
-use super::stage::Viewer;
+use super::stage::{AppEvent, Viewer};
 use crate::failure::Failure;
 use crate::output::say;
-
-/// A message to the event loop from another thread.
-pub(super) enum AppEvent {
-    /// What standard input says as a script.
-    Script(Result<Vec<Action>, Failure>),
-    /// A scene that has been read, or why it could not be.
-    Read(Box<Result<LoadedWindow, Failure>>),
-}
 
 pub(super) struct Start {
     pub(super) device: HeadlessDesc,

@@ -5,10 +5,9 @@ use std::time::Instant;
 use rara::Error;
 use rara::clip::NamedClip;
 
-use super::app::AppEvent;
 use super::dropped::DroppedFile;
 use super::loading::{Load, LoadedWindow, Loading, TICK};
-use super::stage::Viewer;
+use super::stage::{AppEvent, Viewer};
 use crate::clip::are_alternatives;
 use crate::failure::Failure;
 use crate::output;

@@ -12,11 +12,10 @@ use winit::event_loop::EventLoopProxy;
 use winit::window::Window;
 
 use super::action::Action;
-use super::app::AppEvent;
 use super::dropped::DroppedFile;
 use super::flags;
 use super::input::KEYS;
-use super::loading::Loading;
+use super::loading::{LoadedWindow, Loading};
 use super::overlay::Overlay;
 use super::scenery::{Manner, Scenery};
 use super::shots;
@@ -25,6 +24,14 @@ use super::viewpoint::{Viewpoint, Walk};
 use crate::failure::Failure;
 use crate::lens::UP;
 use crate::output::say;
+
+/// A message to the event loop from another thread.
+pub(super) enum AppEvent {
+    /// What standard input says as a script.
+    Script(Result<Vec<Action>, Failure>),
+    /// A scene that has been read, or why it could not be.
+    Read(Box<Result<LoadedWindow, Failure>>),
+}
 
 /// The open window.
 pub(super) struct Viewer {

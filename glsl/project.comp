@@ -1,6 +1,10 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // One invocation a survivor computes its conic, quad and colour for the rasteriser, and the key that orders it.
+struct Params {
+    uint first_layer; // COLOURS_LAYERS: the layer that is red; the next one is green, and the one after it blue
+};
+#define PARAMS Params
 #include "footprint.glsl"
 #include "quad.glsl"
 #include "spherical_harmonics.glsl"
@@ -14,8 +18,7 @@ layout(constant_id = 2) const bool TILES = false;
 layout(constant_id = 3) const bool QUADS = false;
 // True when rectangles of tiles are wanted, and masks only where these do not tell everything.
 layout(constant_id = 5) const bool RECTS = false;
-// True when splats have the numbers of their Gaussian and its layer in place of colours.
-layout(constant_id = 6) const bool NUMBERED = false;
+layout(constant_id = 6) const uint COLOURS = COLOURS_SCENE; // COLOURS_*
 
 BUFFER(readonly, 1, Gaussian, gaussians)
 BUFFER(readonly, 2, uint, sh)
@@ -63,6 +66,29 @@ vec3 numbers(uint number) {
     return vec3(float(number & 0xffffu), float(number >> 16), float(layer_number));
 }
 
+// The direction of a Gaussian's thinnest axis, of equal ones the first, turned to the eye, in the camera's frame.
+vec3 normal(Gaussian gaussian, vec3 sight) {
+    vec3 scale = gaussian.scale.xyz;
+    uint thinnest = scale.x <= scale.y && scale.x <= scale.z ? 0u : (scale.y <= scale.z ? 1u : 2u);
+    vec3 axis = rotation_matrix(gaussian.rotation)[thinnest];
+    return normalize(to_view(dot(axis, sight) > 0.0 ? -axis : axis));
+}
+
+// What a splat is coloured in that is seen in a direction.
+vec3 shown(uint index, Gaussian gaussian, vec3 direction) {
+    vec3 sight = normalize(direction / largest(direction));
+    if (COLOURS == COLOURS_NUMBERS) {
+        return numbers(floatBitsToUint(gaussian.scale.w));
+    }
+    if (COLOURS == COLOURS_NORMALS) {
+        return normal(gaussian, sight);
+    }
+    if (COLOURS == COLOURS_LAYERS) {
+        return vec3(equal(uvec3(layer_number), push.params.first_layer + uvec3(0u, 1u, 2u)));
+    }
+    return colour(index, sight);
+}
+
 void main() {
     uint survivor = LINEAR_GROUP * SURVIVOR_GROUP_SIZE + gl_LocalInvocationIndex;
     if (survivor >= counts.at[0].visible + counts.at[0].cutoff) {
@@ -86,9 +112,7 @@ void main() {
     splat.centre_conic = vec4(f.screen_centre, conic.xy);
     splat.conic_cut = vec4(conic.z, opacity, weight.linear.xy);
     vec3 direction = is_orthographic() ? LAYER_VIEW.rotation_z.xyz : f.relative;
-    vec3 shown = NUMBERED ? numbers(floatBitsToUint(gaussian.scale.w))
-                          : colour(index, normalize(direction / largest(direction)));
-    splat.colour_cut = vec4(shown, weight.linear.z);
+    splat.colour_cut = vec4(shown(index, gaussian, direction), weight.linear.z);
     splat.curvature_depth = vec4(weight.curvature, f.view_centre.z);
     SPLAT_CENTRE(survivor) = splat.centre_conic;
     SPLAT_CONIC(survivor) = splat.conic_cut;

@@ -219,6 +219,11 @@ const uint SHOW_WEIGHT = 1u;
 const uint SHOW_COUNT = 2u;
 const uint SHOW_MEAN = 3u;
 const uint SHOW_STRONGEST = 4u;
+// What splats are coloured in.
+const uint COLOURS_SCENE = 0u;
+const uint COLOURS_NUMBERS = 1u;
+const uint COLOURS_NORMALS = 2u;
+const uint COLOURS_LAYERS = 3u;
 const uint DECAY_LINEAR = 0u;
 const uint DECAY_DEPTH = 1u;
 const uint MISS_KEEP = 0u;

@@ -114,11 +114,11 @@ pub unsafe extern "C" fn rara_channels_default(
 
 /// Draws what a frame's pixels are made of, and waits for it: depths, normals, layers, weights and counts, as the program's
 /// `--aov` does. It is for editors and measurements, not for each frame: every quantity takes a frame or more of its own, and
-/// the scene is uploaded for the call, for normals and layers in other colours once more. All of its memory is freed again.
+/// the scene is uploaded for the call. All of its memory is freed again.
 ///
 /// The renderer lends its device, its compiled pipelines and its placement; its frames, attachments and depths have no say,
-/// and stay as they are. The scene is given as layers because one that is on the device has no colours that could be changed:
-/// states and clips that were set there are given with them. What `settings` show is ignored.
+/// and stay as they are. The scene is given as layers: states and clips that were set on the device are given with them. What
+/// `settings` show is ignored.
 ///
 /// RARA_ERROR_INVALID where the sizes of `channels` are not the camera's, or too few or too many; after an error `values` are as
 /// they were.
@@ -164,8 +164,8 @@ pub unsafe extern "C" fn rara_renderer_channels(
         let scene = of_layers(&layers, &numbers);
         let mut headless = Headless::beside(&renderer.0)?;
         // No channel depends on the scene's own colours.
-        headless.load_as(scene.clone(), ShFormat::Byte)?;
-        let made = headless.channels(&aovs, &scene, (&camera, &clip, &settings))?;
+        headless.load_as(scene, ShFormat::Byte)?;
+        let made = headless.channels(&aovs, (&camera, &clip, &settings))?;
         let made: Vec<f32> = made.into_iter().flat_map(|made| made.values).collect();
         if made.len() != count {
             return invalid("the channels have another size than the camera's picture");

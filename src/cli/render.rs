@@ -316,7 +316,6 @@ impl Render {
             if let Some(cut_scene) = &cut_scene {
                 session.set_layer_clips(cut_scene)?;
             }
-            let scene = cut_scene.as_ref().unwrap_or(&scene);
             let measured = match sliced {
                 Some(cut) => slicer.frame(&mut session, (view, cut, settings), repeat)?,
                 None => session.measured_frame(&view.camera, clip, settings, repeat)?,
@@ -335,7 +334,7 @@ impl Render {
                 });
                 if !self.aov.is_empty() {
                     let frame = (&view.camera, clip, settings);
-                    drawn.channels = session.channels(&self.aov, scene, frame)?;
+                    drawn.channels = session.channels(&self.aov, frame)?;
                 }
             }
             Ok(drawn)

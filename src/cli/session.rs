@@ -176,10 +176,9 @@ impl Session {
     pub(super) fn channels(
         &mut self,
         aovs: &[Aov],
-        scene: &Scene<'_>,
         frame: (&Camera, &Clip, &Settings),
     ) -> Result<Vec<Channel>> {
-        self.headless.channels(aovs, scene, frame)
+        self.headless.channels(aovs, frame)
     }
 
     pub(super) fn last_picture(&mut self) -> Result<Picture> {

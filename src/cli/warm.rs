@@ -62,7 +62,7 @@ impl Warm {
         for text in CLIPS {
             let clip = clip(text)?;
             let frame = (&camera, &clip, &usual);
-            session.channels(Aov::value_variants(), &scene, frame)?;
+            session.channels(Aov::value_variants(), frame)?;
         }
         drop(progress);
         let (seconds, kept) = (session.first_use_ms(0.0) / 1e3, session.has_kept());

@@ -6,6 +6,7 @@ use crate::passes::layers::{self, Layers};
 use crate::passes::occluders::Occluders;
 use crate::passes::region::region_data;
 use crate::passes::scene_layer::SceneLayer;
+use crate::passes::splat_colours::SplatColours;
 use crate::passes::tile_picture::TilePixels;
 use crate::passes::tile_work::TileWork;
 use crate::passes::view::view_data;
@@ -65,6 +66,7 @@ pub(crate) struct Way {
     pub(crate) needs_quads: bool,
     /// Colours, or a debug view.
     pub(crate) show: Show,
+    pub(crate) colours: SplatColours,
     /// How the pixels of the tiles' picture are stored.
     pub(crate) tile_pixels: TilePixels,
 }
@@ -101,6 +103,7 @@ pub(crate) struct SceneFacts<'a> {
     pub(crate) expects_depth: bool,
     /// The camera of whose picture the frame shows a part; `None` where it shows all of it.
     pub(crate) whole: Option<&'a Camera>,
+    pub(crate) colours: SplatColours,
 }
 
 impl Plan {
@@ -140,6 +143,10 @@ impl Plan {
                 expects_depth: scene.expects_depth,
                 needs_quads: !is_tiled || scene.expects_depth,
                 show: settings.show,
+                colours: match settings.show {
+                    Show::Strongest => SplatColours::Numbers,
+                    Show::Colour | Show::Weight | Show::Count | Show::Mean => scene.colours,
+                },
                 tile_pixels: scene.picture.unwrap_or_default(),
             },
             laws: Laws::of(settings),

@@ -12,7 +12,6 @@ use crate::passes::{compact, cutoff};
 use crate::types::{self, Quad, Splat};
 use rara_gpu::DeviceShape;
 use rara_scene::precision::ShFormat;
-use rara_scene::settings::Show;
 
 pub(crate) static STAGE: Stage = Stage::when_finding_view("project", &[STORAGES], record);
 
@@ -58,7 +57,7 @@ impl OfPlan for project::Constants {
             tiles: plan.is_tiled(),
             quads: plan.needs_quads(),
             rects: plan.keeps_rects(),
-            numbered: plan.way.show == Show::Strongest,
+            colours: plan.way.colours.code(),
         }
     }
 }
@@ -71,5 +70,8 @@ fn record(recording: &mut Recording<'_, '_>) {
         cutoff::MEMORY => [cut_records],
         MEMORY => [splats, quads, depth_keys, tile_masks],
     });
-    recording.dispatch(buffers, (), counted!(project_groups));
+    let params = project::Params {
+        first_layer: recording.plan.way.colours.first_layer(),
+    };
+    recording.dispatch(buffers, params, counted!(project_groups));
 }

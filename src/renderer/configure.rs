@@ -13,8 +13,8 @@ use super::pair_room::Retry;
 use super::request::FrameRequest;
 use super::{ConfiguredFrame, Renderer};
 use crate::passes::{
-    Kept, Occluders, Plan, SceneBuffers, SceneFacts, SceneLayer, Targets, TilePixels, TileWork,
-    Work,
+    Kept, Occluders, Plan, SceneBuffers, SceneFacts, SceneLayer, SplatColours, Targets, TilePixels,
+    TileWork, Work,
 };
 use rara_base::error::{Error, Result};
 use rara_base::limits;
@@ -125,6 +125,7 @@ impl Renderer {
             pair_capacity: self.memory.pairs.room(),
             redrawn,
             whole: request.whole,
+            colours: request.colours,
             ..self.facts(scene.layers(), scene.count, raster, depth_map)
         };
         Ok(Decision {
@@ -243,6 +244,7 @@ impl Renderer {
                 .map(|(depth, map)| Occluders::new(depth.format, map)),
             expects_depth: self.desc.expected_depth.is_some(),
             whole: None,
+            colours: SplatColours::Scene,
         }
     }
 

@@ -171,11 +171,6 @@ impl Renderer {
         &self.device
     }
 
-    /// Where the next frame's scene stands.
-    pub(crate) fn placement(&self) -> &Placement {
-        &self.placement
-    }
-
     fn with(device: &Device, desc: RendererDesc, pipelines: SharedPipelines) -> Result<Self> {
         desc.check(device)?;
         let frames =

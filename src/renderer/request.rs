@@ -1,7 +1,7 @@
 //! What is asked of a frame.
 
 use super::outcome::Submission;
-use crate::passes::SceneBuffers;
+use crate::passes::{SceneBuffers, SplatColours};
 use rara_scene::camera::Camera;
 use rara_scene::clip::Clip;
 use rara_scene::precision::TargetFormat;
@@ -20,6 +20,7 @@ pub(crate) struct FrameRequest<'a> {
     pub(crate) picture: Option<TargetFormat>,
     /// The camera of whose picture `camera` shows a part; `None` where it shows all of it.
     pub(crate) whole: Option<&'a Camera>,
+    pub(crate) colours: SplatColours,
 }
 
 impl<'a> FrameRequest<'a> {
@@ -38,6 +39,7 @@ impl<'a> FrameRequest<'a> {
             submission: Submission::InFlight,
             picture: None,
             whole: None,
+            colours: SplatColours::Scene,
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::stored::{SpareMemory, Stored, StoredPicture};
 use super::target::{Target, blendable_on, vulkan_format};
 use super::{HeadlessDesc, Session};
-use crate::passes::{SceneBuffers, SceneLayer};
+use crate::passes::{SceneBuffers, SceneLayer, SplatColours};
 use crate::renderer::{Renderer, RendererDesc};
 use crate::stats::FrameStats;
 use crate::trace;
@@ -163,9 +163,20 @@ impl Headless {
         clip: &Clip,
         settings: &Settings,
     ) -> Result<FrameStats> {
+        self.render_in(SplatColours::Scene, camera, clip, settings)
+    }
+
+    /// The same of splats in other colours.
+    fn render_in(
+        &mut self,
+        colours: SplatColours,
+        camera: &Camera,
+        clip: &Clip,
+        settings: &Settings,
+    ) -> Result<FrameStats> {
         let trace = self.session.trace.clone();
         let (session, target) = (&mut self.session, &mut self.target);
-        let draw = || session.draw(target, camera, clip, settings);
+        let draw = || session.draw(target, camera, clip, settings, colours);
         let drawn = trace::span(trace.as_ref(), "render", draw);
         drawn.map_err(|error| self.session.explain(error))
     }

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use ash::vk;
 
-use crate::passes::{SceneBuffers, SceneLayer};
+use crate::passes::{SceneBuffers, SceneLayer, SplatColours};
 use crate::renderer::{ConfiguredFrame, FrameRequest, Outcome, Renderer, RendererDesc, Submission};
 use crate::stats::FrameStats;
 use crate::trace::{self, Trace};
@@ -127,6 +127,7 @@ impl Session {
         camera: &Camera,
         clip: &Clip,
         settings: &Settings,
+        colours: SplatColours,
     ) -> Result<FrameStats> {
         let trace = self.trace.as_ref();
         let renderer = &mut self.renderer;
@@ -141,6 +142,7 @@ impl Session {
             submission: Submission::Awaited,
             picture: target.of_tiles_on(settings.background),
             whole: None,
+            colours,
         };
         let configure = |renderer: &mut Renderer, target: &mut Target| {
             let frame = trace::span(trace, "configure", || renderer.configure_frame(&request))?;

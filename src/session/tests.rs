@@ -84,15 +84,33 @@ fn a_picture_after_frames_in_flight_has_the_room_it_needs() {
             assert_eq!(outcome, expected, "frame {frame} of {frames_before}");
         }
         let mut target = Target::default();
-        let drawn = session.draw(&mut target, &camera, &Clip::default(), &settings);
+        let drawn = session.draw(
+            &mut target,
+            &camera,
+            &Clip::default(),
+            &settings,
+            SplatColours::Scene,
+        );
         let stats = drawn.expect("draws");
         assert_eq!(stats.raster.path, "tiles", "after {frames_before} frames");
         pictures.push(target.read_back(&session.device).expect("reads back"));
         // Once more, there is nothing to do for this target; another target gets the draw alone.
-        let again = session.draw(&mut target, &camera, &Clip::default(), &settings);
+        let again = session.draw(
+            &mut target,
+            &camera,
+            &Clip::default(),
+            &settings,
+            SplatColours::Scene,
+        );
         assert!(again.expect("draws").skipped.contains(&"splat"));
         let mut other = Target::default();
-        let drawn = session.draw(&mut other, &camera, &Clip::default(), &settings);
+        let drawn = session.draw(
+            &mut other,
+            &camera,
+            &Clip::default(),
+            &settings,
+            SplatColours::Scene,
+        );
         assert!(drawn.expect("draws").skipped.ends_with(&["tiles"]));
         pictures.push(other.read_back(&session.device).expect("reads back"));
         drop((target, other));

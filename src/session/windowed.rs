@@ -9,7 +9,7 @@ use super::lines::Line;
 use super::panels::{self, Panel, Panels};
 use super::target::Target;
 use super::{HeadlessDesc, Session, loaded};
-use crate::passes::{Lines, SceneLayer};
+use crate::passes::{Lines, SceneLayer, SplatColours};
 use crate::renderer::{FrameRequest, Outcome, RendererDesc};
 use crate::stats::FrameStats;
 use rara_base::error::{Error, Result};
@@ -290,7 +290,7 @@ impl Windowed {
         self.frames.wait_for_all()?;
         let session = &mut self.session;
         let mut target = Target::default();
-        let drawn = session.draw(&mut target, camera, clip, settings);
+        let drawn = session.draw(&mut target, camera, clip, settings, SplatColours::Scene);
         let picture = drawn.and_then(|_| target.read_back(&session.device));
         let picture = picture.map_err(|error| session.explain(error))?;
         session.check_validation()?;

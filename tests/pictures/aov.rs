@@ -3,7 +3,7 @@
 use crate::common;
 use glam::{DQuat, DVec3, Vec3};
 use rara::scene::{Kind, generate};
-use rara::{Aov, Camera, Clip, ClipOp, Gaussians, Mode, Projection, Raster, Scene, Settings, Show};
+use rara::{Aov, Camera, Clip, ClipOp, Gaussians, Mode, Projection, Raster, Settings, Show};
 
 #[test]
 fn headless_expected_depths_are_the_references() {
@@ -74,7 +74,7 @@ fn normals_are_turned_to_the_eye_and_not_to_its_plane() {
     headless.load(&disc).expect("uploads");
     for (camera, expected) in [(camera, normal), (flat.fx(20.0).fy(20.0), -normal)] {
         let frame = (&camera, &clip, &settings);
-        let channels = headless.channels(&[Aov::Normal], &Scene::from(&disc), frame);
+        let channels = headless.channels(&[Aov::Normal], frame);
         let channels = channels.expect("channels");
         let [x, y, z] = channels.as_slice() else {
             panic!("{} channels", channels.len());

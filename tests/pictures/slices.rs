@@ -171,7 +171,7 @@ fn channels_name_layers_and_count_splats() {
     headless.render(frame.0, frame.1, frame.2).expect("renders");
     let before = headless.picture().expect("reads back");
     let aovs = [Aov::Layer, Aov::Count, Aov::Layer];
-    let channels = headless.channels(&aovs, &scene, frame).expect("draws");
+    let channels = headless.channels(&aovs, frame).expect("draws");
     let names: Vec<&str> = channels
         .iter()
         .map(|channel| channel.name.as_str())

@@ -5,6 +5,7 @@ use glam::DVec3;
 use super::*;
 use crate::passes::pipelines::{Kernel, PipelineKey};
 use crate::passes::shaders::project;
+use crate::passes::splat_colours::SplatColours;
 use crate::passes::weight::Weight;
 use rara_scene::clip::Plane;
 use rara_scene::settings::Mode;
@@ -31,6 +32,7 @@ fn plan(mode: Mode, planes: usize) -> Plan {
         occluders: None,
         expects_depth: false,
         whole: None,
+        colours: SplatColours::Scene,
     };
     let eye = DVec3::new(0.0, 0.0, -4.0);
     let camera = Camera::look_at(eye, DVec3::ZERO, -DVec3::Y, 50.0, (64, 64));

@@ -31,7 +31,7 @@ fn headless(scene: &Scene<'_>, camera: &Camera, clip: &Clip) -> Vec<f32> {
     headless.load(scene.clone()).expect("uploads");
     let all = [Aov::Depth, Aov::Normal, Aov::Layer, Aov::Weight, Aov::Count];
     let frame = (camera, clip, &Settings::default());
-    let channels = headless.channels(&all, scene, frame).expect("draws");
+    let channels = headless.channels(&all, frame).expect("draws");
     channels
         .into_iter()
         .flat_map(|channel| channel.values)

@@ -286,15 +286,14 @@ fn channels_turn_and_scale_with_the_scene() {
     let clip = common::clip(&scene, 1, ClipOp::And);
     let settings = Settings::default();
     let all = [Aov::Depth, Aov::Normal, Aov::Layer, Aov::Weight, Aov::Count];
-    let plain_scene = Scene::from(&scene);
-    check(&scene, |what, [plain, placed], layers, whole, _| {
+    check(&scene, |what, [plain, placed], _, whole, _| {
         for camera in [camera, flat.fx(20.0).fy(20.0)] {
             let camera = camera.near_cut(Some(0.2));
             let there = moved(&camera, whole);
             let frame = (&camera, &clip, &settings);
-            let before = plain.channels(&all, &plain_scene, frame).expect("channels");
+            let before = plain.channels(&all, frame).expect("channels");
             let frame = (&there, &carried(&clip, whole), &settings);
-            let after = placed.channels(&all, layers, frame).expect("channels");
+            let after = placed.channels(&all, frame).expect("channels");
             let what = format!("{what}: {:?}", camera.projection);
             assert_channels(&what, &before, &after, whole);
         }

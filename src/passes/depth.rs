@@ -62,7 +62,7 @@ fn record(recording: &mut Recording<'_, '_>) {
 /// The draw of the depths.
 pub(crate) fn draw(plan: &Plan, attachments: Attachments) -> Draw<splat_depth::Program> {
     let depth = attachments.depth.is_some();
-    let weight = Weight::of(plan);
+    let weight = Weight::from_plan(plan);
     let constants = splat_depth::Constants {
         boxes: false,
         clip_mode: weight.mode,

@@ -17,7 +17,7 @@ pub(crate) struct Laws {
 
 impl Laws {
     /// Takes them from the settings.
-    pub(crate) fn of(settings: &Settings) -> Self {
+    pub(crate) fn from_settings(settings: &Settings) -> Self {
         Self {
             decay: match settings.decay_law() {
                 Decay::Linear => types::DECAY_LINEAR,

@@ -13,7 +13,6 @@ mod cutoff;
 pub(crate) mod depth;
 mod depth_keys;
 mod frame;
-mod kept;
 mod laws;
 mod layers;
 #[cfg_attr(not(feature = "view"), allow(dead_code))]
@@ -22,6 +21,7 @@ mod occluders;
 mod pair_estimate;
 mod pipelines;
 mod plan;
+mod previous_frame;
 mod project;
 mod radix;
 mod reclip;
@@ -49,12 +49,12 @@ mod working;
 
 pub(crate) use buffers::{Buffers, Spare};
 pub(crate) use frame::{DRAW, record};
-pub(crate) use kept::Kept;
 #[cfg(feature = "view")]
 pub(crate) use lines::{Lines, PictureLine};
 pub(crate) use occluders::Occluders;
 pub(crate) use pipelines::Pipelines;
 pub(crate) use plan::{Plan, SceneFacts};
+pub(crate) use previous_frame::PreviousFrame;
 pub(crate) use recording::Resources;
 pub use scene_buffers::{SceneBuffers, Staging};
 pub use scene_layer::SceneLayer;

@@ -11,7 +11,7 @@ use rara_scene::camera::{Camera, Projection};
 use rara_scene::{Gaussians, Scene};
 
 /// Gaussians in the sample, about. Half of them are the largest of their layers, which stand for themselves alone: a few large
-/// ones may make most of the pairs. The rest are each so manieth of the others.
+/// ones may make most of the pairs. The rest are every n-th of the others.
 const SAMPLES: usize = 2048;
 
 /// A sample of a scene's Gaussians, by layers.
@@ -22,15 +22,15 @@ pub(super) struct PairSample {
 
 #[derive(Debug)]
 struct LayerSample {
-    largest: Vec<Sampled>,
+    largest: Vec<SampleGaussian>,
     /// How many Gaussians each of the rest stands for.
     weight: f64,
-    rest: Vec<Sampled>,
+    rest: Vec<SampleGaussian>,
 }
 
 /// A Gaussian of the sample, in its layer's space.
 #[derive(Debug, Clone, Copy)]
-struct Sampled {
+struct SampleGaussian {
     centre: Vec3,
     /// Half axes one standard deviation long.
     axes: [Vec3; 3],
@@ -57,7 +57,8 @@ impl PairSample {
             .filter(|(_, layer)| layer.is_visible())
             .map(|(own, layer)| {
                 let eye = Eye::new(camera, whole, layer);
-                let tiles = |of: &[Sampled]| of.iter().map(|one| eye.tiles(one)).sum::<f64>();
+                let tiles =
+                    |of: &[SampleGaussian]| of.iter().map(|one| eye.tiles(one)).sum::<f64>();
                 tiles(&own.largest) + own.weight * tiles(&own.rest)
             });
         pairs.sum::<f64>().ceil() as u32 // what is too much for 32 bits becomes the most that they hold
@@ -77,7 +78,7 @@ impl LayerSample {
             false => f32::NEG_INFINITY,
         };
         let is_large = |index: &usize| sizes[*index] > most_of_rest;
-        let sampled = |index: usize| Sampled::new(gaussians, index);
+        let sampled = |index: usize| SampleGaussian::new(gaussians, index);
         let others = (0..sizes.len()).filter(|index| !is_large(index));
         let rest: Vec<_> = others.clone().step_by(step).map(sampled).collect();
         Self {
@@ -88,7 +89,7 @@ impl LayerSample {
     }
 }
 
-impl Sampled {
+impl SampleGaussian {
     fn new(gaussians: &Gaussians, index: usize) -> Self {
         let turn = Mat3::from_quat(gaussians.rotations()[index]);
         let scale = gaussians.scales()[index];
@@ -129,7 +130,7 @@ impl<'a> Eye<'a> {
     }
 
     /// The tiles that a Gaussian touches, on average over where the tiles' edges lie: the footprint of stage `project`.
-    fn tiles(&self, gaussian: &Sampled) -> f64 {
+    fn tiles(&self, gaussian: &SampleGaussian) -> f64 {
         let camera = self.camera;
         let centre = self.turn * (gaussian.centre.as_dvec3() - self.position);
         let opacity = f64::from(gaussian.opacity) * self.opacity;

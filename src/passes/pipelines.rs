@@ -48,13 +48,13 @@ impl Hash for Identity {
 }
 
 /// Constants that follow from a plan.
-pub(crate) trait OfPlan {
+pub(crate) trait FromPlan {
     /// The constants of a plan.
-    fn of(plan: &Plan) -> Self;
+    fn from_plan(plan: &Plan) -> Self;
 }
 
-impl OfPlan for () {
-    fn of(_: &Plan) {}
+impl FromPlan for () {
+    fn from_plan(_: &Plan) {}
 }
 
 /// A compute pipeline that a stage dispatches: a shader of a program, with constants.
@@ -85,12 +85,12 @@ impl<P: Interface> Kernel<P> {
     }
 
     /// The pipeline that a plan makes of a program.
-    pub(crate) fn of(plan: &Plan) -> Self
+    pub(crate) fn from_plan(plan: &Plan) -> Self
     where
         P: Compute,
-        P::Constants: OfPlan,
+        P::Constants: FromPlan,
     {
-        Self::new(P::SHADER, P::Constants::of(plan))
+        Self::new(P::SHADER, P::Constants::from_plan(plan))
     }
 
     /// Its identity.
@@ -213,8 +213,8 @@ impl Pipelines {
         )?;
         for (key, pipeline) in missing.into_iter().zip(made) {
             match pipeline {
-                Made::Compute(pipeline) => drop(self.compute.insert(key, pipeline)),
-                Made::Graphics(pipeline) => drop(self.graphics.insert(key, pipeline)),
+                AnyPipeline::Compute(pipeline) => drop(self.compute.insert(key, pipeline)),
+                AnyPipeline::Graphics(pipeline) => drop(self.graphics.insert(key, pipeline)),
             }
         }
         Ok(())
@@ -222,7 +222,7 @@ impl Pipelines {
 }
 
 /// A pipeline of either kind.
-enum Made {
+enum AnyPipeline {
     Compute(ComputePipeline),
     Graphics(GraphicsPipeline),
 }
@@ -238,10 +238,10 @@ impl PipelineKey {
         })
     }
 
-    fn make(&self, device: &Device, bindings: Bindings) -> Result<Made> {
+    fn make(&self, device: &Device, bindings: Bindings) -> Result<AnyPipeline> {
         let begun = Instant::now();
         let made = match (self.kernel(bindings), self.draw) {
-            (Some(kernel), _) => Made::Compute(ComputePipeline::new(device, &kernel)?),
+            (Some(kernel), _) => AnyPipeline::Compute(ComputePipeline::new(device, &kernel)?),
             (None, draw) => {
                 let (Identity(fragment), attachments, depth_test) = draw.expect("no kernel");
                 let desc = GraphicsDesc {
@@ -255,7 +255,7 @@ impl PipelineKey {
                     topology: vk::PrimitiveTopology::TRIANGLE_STRIP,
                     bindings,
                 };
-                Made::Graphics(GraphicsPipeline::new(device, &desc)?)
+                AnyPipeline::Graphics(GraphicsPipeline::new(device, &desc)?)
             }
         };
         let ms = 1e3 * begun.elapsed().as_secs_f64();

@@ -149,7 +149,7 @@ impl Plan {
                 },
                 tile_pixels: scene.picture.unwrap_or_default(),
             },
-            laws: Laws::of(settings),
+            laws: Laws::from_settings(settings),
             tile_work: scene.tile_work,
             is_drawn: scene.picture.is_none(),
             occluders: occluders.map(|occluders| Occluders { size, ..occluders }),

@@ -1,7 +1,7 @@
 //! Stage `project`, one invocation a survivor, computes conic, colour and depth key, the mask of tiles and, where it is
 //! drawn as one, the quad.
 
-use crate::passes::pipelines::OfPlan;
+use crate::passes::pipelines::FromPlan;
 use crate::passes::plan::Plan;
 use crate::passes::recording::{Recording, counted};
 use crate::passes::shaders::project;
@@ -43,8 +43,8 @@ memory! {
 }
 
 /// The shader reads spherical harmonics in one format; without cut splats it reads no cutoff records.
-impl OfPlan for project::Constants {
-    fn of(plan: &Plan) -> Self {
+impl FromPlan for project::Constants {
+    fn from_plan(plan: &Plan) -> Self {
         Self {
             cut: plan.view_is_cut(),
             layered: plan.way.layered,

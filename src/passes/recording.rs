@@ -3,7 +3,7 @@
 use ash::vk;
 
 use crate::passes::buffers::Buffers;
-use crate::passes::pipelines::{Kernel, OfPlan, PipelineKey, Pipelines};
+use crate::passes::pipelines::{FromPlan, Kernel, PipelineKey, Pipelines};
 use crate::passes::plan::Plan;
 use crate::passes::scene_buffers::SceneBuffers;
 use crate::passes::shaders::{BufferSet, Compute, Interface};
@@ -93,9 +93,9 @@ impl<'a, 'r> Recording<'a, 'r> {
     where
         B: BufferSet<&'static Storage, Program = P>,
         P: Compute<Buffers<&'static Storage> = B>,
-        P::Constants: OfPlan,
+        P::Constants: FromPlan,
     {
-        let kernel = Kernel::<P>::of(self.plan);
+        let kernel = Kernel::<P>::from_plan(self.plan);
         self.dispatch_kernel(&kernel, buffers, params, groups);
     }
 

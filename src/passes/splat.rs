@@ -26,7 +26,7 @@ pub(crate) fn draw(plan: &Plan, attachments: Attachments) -> Draw<splat::Program
         _ => [&splat::VERT, &splat::FRAG],
     };
     let depth = attachments.depth.is_some();
-    let weight = Weight::of(plan);
+    let weight = Weight::from_plan(plan);
     let constants = splat::Constants {
         clip_mode: weight.mode,
         several: weight.several,

@@ -20,7 +20,7 @@ pub(crate) enum TilePixels {
 impl TilePixels {
     /// The pixels with which the tiles' picture is a target's, to the byte. `None` for 16-bit floats, to which one driver
     /// rounds in shaders and cuts off in blending.
-    pub(crate) fn of(target: TargetFormat) -> Option<Self> {
+    pub(crate) fn from_target(target: TargetFormat) -> Option<Self> {
         match target {
             TargetFormat::Float => Some(Self::Float),
             TargetFormat::Unorm8 => Some(Self::Byte),

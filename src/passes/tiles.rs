@@ -49,7 +49,9 @@ fn drawn_lists(plan: &Plan) -> &'static [List] {
     match plan.way.shape {
         DeviceShape::Cpu => &[List::All],
         // A reclipped frame takes over the lists of a frame in which nothing was cut.
-        DeviceShape::Gpu { .. } if Weight::of(plan).has_several_kinds() && !plan.reclips() => {
+        DeviceShape::Gpu { .. }
+            if Weight::from_plan(plan).has_several_kinds() && !plan.reclips() =>
+        {
             &[List::Few, List::Several]
         }
         DeviceShape::Gpu { .. } => &[List::Few],
@@ -57,7 +59,7 @@ fn drawn_lists(plan: &Plan) -> &'static [List] {
 }
 
 fn kernel(plan: &Plan, list: List) -> Kernel<tiles::Program> {
-    let weight = Weight::of(plan);
+    let weight = Weight::from_plan(plan);
     let is_one_of_two = list == List::Few && drawn_lists(plan).len() > 1;
     let work = plan.tile_work;
     let constants = tiles::Constants {

@@ -1,14 +1,14 @@
 //! The constants of the programs that read layers, as they follow from a plan.
 
-use crate::passes::pipelines::OfPlan;
+use crate::passes::pipelines::FromPlan;
 use crate::passes::plan::Plan;
 use crate::passes::shaders;
 
 /// The constants of a program: whether there are several layers, and what else is named.
 macro_rules! layered {
     ($program:ident $(, $constant:ident: $of:expr)*) => {
-        impl OfPlan for shaders::$program::Constants {
-            fn of(plan: &Plan) -> Self {
+        impl FromPlan for shaders::$program::Constants {
+            fn from_plan(plan: &Plan) -> Self {
                 Self {
                     $($constant: $of(plan),)*
                     layered: plan.way.layered,

@@ -35,7 +35,7 @@ pub(crate) struct Weight {
 
 impl Weight {
     /// The constants of a plan. After a hard clip nothing is left for the fragment stage to do.
-    pub(crate) fn of(plan: &Plan) -> Self {
+    pub(crate) fn from_plan(plan: &Plan) -> Self {
         let when = |needed: bool, value: u32| if needed { value } else { 0 };
         let (cuts, mode, laws) = (plan.cuts(), plan.mode(), plan.laws);
         Self {

@@ -13,8 +13,8 @@ use super::pair_room::Retry;
 use super::request::FrameRequest;
 use super::{ConfiguredFrame, Renderer};
 use crate::passes::{
-    Kept, Occluders, Plan, SceneBuffers, SceneFacts, SceneLayer, SplatColours, Targets, TilePixels,
-    TileWork, Work,
+    Occluders, Plan, PreviousFrame, SceneBuffers, SceneFacts, SceneLayer, SplatColours, Targets,
+    TilePixels, TileWork, Work,
 };
 use rara_base::error::{Error, Result};
 use rara_base::limits;
@@ -111,7 +111,7 @@ impl Renderer {
         let picture = request
             .picture
             .filter(|_| leaves_picture)
-            .and_then(TilePixels::of);
+            .and_then(TilePixels::from_target);
         let depth_map = self.depth_map();
         if let Some(map) = &depth_map {
             map.check(request.camera.projection)?;
@@ -158,8 +158,8 @@ impl Renderer {
             if self.memory.fits(plan) {
                 return Ok(decision);
             }
-            if let Some(kept) = &mut self.kept {
-                kept.holds = false;
+            if let Some(previous) = &mut self.previous {
+                previous.holds = false;
             }
             let frames = (
                 self.frames.prepared(),
@@ -255,8 +255,8 @@ impl Renderer {
             let redrawn = frame.decision.as_ref().is_some_and(|had| had.redrawn);
             redrawn && frame.fell_back()
         };
-        if self.kept.is_some() && self.frames.newest().is_some_and(undrawn) {
-            self.kept = None; // the frame before was not drawn
+        if self.previous.is_some() && self.frames.newest().is_some_and(undrawn) {
+            self.previous = None; // the frame before was not drawn
         }
         let (fell_back, needed) = self.frames.awaited(request.submission);
         let budget = self.device.memory_budget();
@@ -269,9 +269,9 @@ impl Renderer {
     fn work(&mut self, scene: u64, plan: &Plan) -> Result<Work> {
         // The host's depth may change with each frame, and a frame that is yet to be prepared leaves other results.
         let is_next = Arc::strong_count(&self.pending) == 1;
-        let kept = self.kept.as_ref();
-        let kept = kept.filter(|_| is_next && plan.occluders.is_none());
-        let work = Kept::work(kept, scene, plan);
+        let previous = self.previous.as_ref();
+        let previous = previous.filter(|_| is_next && plan.occluders.is_none());
+        let work = PreviousFrame::work(previous, scene, plan);
         if !matches!(work, Work::Reclip { .. }) {
             return Ok(work);
         }
@@ -284,8 +284,8 @@ impl Renderer {
             Ok(()) => Ok(work),
             // A whole frame needs less memory than a reclipped one.
             Err(Error::Memory(_) | Error::Budget(_)) => {
-                self.kept = None;
-                Ok(Kept::work(None, scene, plan))
+                self.previous = None;
+                Ok(PreviousFrame::work(None, scene, plan))
             }
             Err(error) => Err(error),
         }

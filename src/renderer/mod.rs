@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use ash::vk;
 
-use crate::passes::Kept;
+use crate::passes::PreviousFrame;
 use crate::stats::RasterChoice;
 use rara_base::error::{Error, Result};
 use rara_gpu::Device;
@@ -109,7 +109,7 @@ pub struct Renderer {
     memory: WorkingMemory,
     frames: FramesInFlight,
     /// The results that the last prepared frame has left in the memory.
-    kept: Option<Kept>,
+    previous: Option<PreviousFrame>,
     /// No other renderer of this process has it.
     id: u64,
     /// Shared with the frames that are configured and not prepared, as long as nothing is forgotten.
@@ -182,7 +182,7 @@ impl Renderer {
             pipelines,
             memory: WorkingMemory::default(),
             frames,
-            kept: None,
+            previous: None,
             id: NEXT_ID.fetch_add(1, Ordering::Relaxed),
             pending: Arc::default(),
             noted: RasterChoice::default(),
@@ -219,7 +219,7 @@ impl Renderer {
     /// Forgets what earlier frames have computed: the next one computes everything. [`configure`](Self::configure) comes
     /// after it.
     pub fn forget(&mut self) {
-        self.kept = None;
+        self.previous = None;
         self.pending = Arc::default(); // frames that are configured may count on it
     }
 

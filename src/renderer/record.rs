@@ -6,7 +6,7 @@ use ash::vk;
 
 use super::frame::FrameState;
 use super::{ConfiguredFrame, PreparedFrame, Renderer, out_of_order};
-use crate::passes::{self, Kept, Resources, SceneBuffers, Work, composite, tiles};
+use crate::passes::{self, PreviousFrame, Resources, SceneBuffers, Work, composite, tiles};
 use rara_base::error::Result;
 use rara_gpu::{DepthImage, Drawer, Recorder};
 
@@ -92,10 +92,10 @@ impl Renderer {
         let prepared = self.frames.prepared();
         let is_replaced = self.memory.keep_replaced(&state.buffers, prepared);
         if plan.work != Work::Draw {
-            let before = self.kept.take();
+            let before = self.previous.take();
             // Later frames find nothing in buffers that have been replaced.
             let keeps = self.desc.reuse && plan.occluders.is_none() && !is_replaced;
-            self.kept = keeps.then(|| Kept::after(before, scene.id, plan));
+            self.previous = keeps.then(|| PreviousFrame::after(before, scene.id, plan));
         }
     }
 

@@ -71,7 +71,7 @@ impl Renderer {
     /// buffers in place of the larger ones; there are none then, and the next [`configure`](Self::configure) allocates them.
     pub fn trim(&mut self, keep: Option<&PreparedFrame>) -> Result<()> {
         let plan = keep.map(|frame| frame.state.decision.plan.clone());
-        self.kept = None;
+        self.previous = None;
         let mut pairs = PairRoom::default();
         let plan = plan.map(|mut plan| {
             let needed = self.frames.newest().map_or(0, |frame| frame.pairs());

@@ -1,6 +1,6 @@
 //! Turns scenes into pictures without a window.
 
-use super::stored::{SpareMemory, Stored, StoredPicture};
+use super::stored::{PictureBytes, SpareMemory, StoredPicture};
 use super::target::{Target, blendable_on, vulkan_format};
 use super::{HeadlessDesc, Session};
 use crate::passes::{SceneBuffers, SceneLayer, SplatColours};
@@ -192,9 +192,9 @@ impl Headless {
         self.stored(StoredPicture::new)
     }
 
-    fn stored<R>(&mut self, act: impl FnOnce(Stored<'_>, &SpareMemory) -> R) -> Result<R> {
+    fn stored<R>(&mut self, act: impl FnOnce(PictureBytes<'_>, &SpareMemory) -> R) -> Result<R> {
         let read_back = || {
-            let act = |stored: Stored<'_>| act(stored, &self.spare_memory);
+            let act = |stored: PictureBytes<'_>| act(stored, &self.spare_memory);
             let result = self.target.stored(&self.session.device, act)?;
             self.session.check_validation()?;
             Ok(result)

@@ -10,7 +10,7 @@ use rara_scene::precision::TargetFormat;
 
 /// The bytes of a picture as the device stores them.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Stored<'a> {
+pub(super) struct PictureBytes<'a> {
     /// Where the lists of tiles begin, for a picture that tiles have made; empty for one that was drawn.
     pub(super) begins: &'a [u8],
     pub(super) pixels: &'a [u8],
@@ -18,7 +18,7 @@ pub(super) struct Stored<'a> {
     pub(super) format: TargetFormat,
 }
 
-impl Stored<'_> {
+impl PictureBytes<'_> {
     pub(super) fn decode(&self) -> Picture {
         let Self {
             begins,
@@ -54,7 +54,7 @@ pub struct StoredPicture {
 
 impl StoredPicture {
     /// A copy in memory that an earlier one has left, if one has.
-    pub(super) fn new(stored: Stored<'_>, spare: &SpareMemory) -> Self {
+    pub(super) fn new(stored: PictureBytes<'_>, spare: &SpareMemory) -> Self {
         let memory = spare.lock().unwrap_or_else(PoisonError::into_inner).pop();
         let mut bytes = memory.unwrap_or_default();
         bytes.clear();
@@ -72,7 +72,7 @@ impl StoredPicture {
     /// The picture.
     pub fn decode(self) -> Picture {
         let (begins, pixels) = self.bytes.split_at(self.begins);
-        let stored = Stored {
+        let stored = PictureBytes {
             begins,
             pixels,
             extent: self.extent,

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use ash::vk;
 
-use super::stored::Stored;
+use super::stored::PictureBytes;
 use crate::passes::TilePicture;
 use rara_base::error::{Error, Result};
 use rara_gpu::{Buffer, BufferDesc, Device, Image, ImageDesc, Location};
@@ -132,12 +132,12 @@ impl Target {
     pub(super) fn stored<R>(
         &mut self,
         device: &Device,
-        act: impl FnOnce(Stored<'_>) -> R,
+        act: impl FnOnce(PictureBytes<'_>) -> R,
     ) -> Result<R> {
         let format = self.format;
         if let Some((tiles, extent)) = &self.tiles {
             let [begins, pixels] = TilePicture::sizes(*extent, format);
-            return Ok(act(Stored {
+            return Ok(act(PictureBytes {
                 begins: &read(device, &tiles.begins, begins)?,
                 pixels: &read(device, &tiles.pixels, pixels)?,
                 extent: *extent,
@@ -163,7 +163,7 @@ impl Target {
             unsafe { image.copy_to(cmd, &readback) };
             Ok(())
         })?;
-        let result = act(Stored {
+        let result = act(PictureBytes {
             begins: &[],
             pixels: &readback.mapped()[..size as usize],
             extent,

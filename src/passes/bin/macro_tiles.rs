@@ -3,7 +3,7 @@
 //! a splat over the whole picture costs its tiles and nobody waits for it.
 
 use crate::passes::bin::lists::{self, pairs};
-use crate::passes::pipelines::OfPlan;
+use crate::passes::pipelines::FromPlan;
 use crate::passes::plan::Plan;
 use crate::passes::radix::{self, Kernels, Keys, Pass};
 use crate::passes::recording::{Groups, Recording, counted};
@@ -57,10 +57,10 @@ fn count(plan: &Plan) -> u64 {
         .product()
 }
 
-impl OfPlan for batch_count::Constants {
-    fn of(plan: &Plan) -> Self {
+impl FromPlan for batch_count::Constants {
+    fn from_plan(plan: &Plan) -> Self {
         Self {
-            several: Weight::of(plan).has_several_kinds(),
+            several: Weight::from_plan(plan).has_several_kinds(),
         }
     }
 }

@@ -44,7 +44,7 @@ fn plan(mode: Mode, planes: usize) -> Plan {
 
 /// The pipeline that projects.
 fn projects_by(plan: &Plan) -> PipelineKey {
-    Kernel::<project::Program>::of(plan).key()
+    Kernel::<project::Program>::from_plan(plan).key()
 }
 
 #[test]
@@ -64,7 +64,7 @@ fn without_planes_every_mode_is_none_to_the_pipeline_and_the_byte() {
             none.mode(),
             "the blocks' and the classes' pipeline"
         );
-        assert_eq!(Weight::of(&plan), Weight::of(&none));
+        assert_eq!(Weight::from_plan(&plan), Weight::from_plan(&none));
         assert_eq!(projects_by(&plan), projects_by(&none));
         assert_eq!(
             (plan.cuts(), plan.data.weight.cut_stride),
@@ -80,6 +80,6 @@ fn without_planes_every_mode_is_none_to_the_pipeline_and_the_byte() {
 fn a_hard_clip_needs_no_records_and_no_weights() {
     let (none, hard) = (plan(Mode::None, 0), plan(Mode::Hard, 1));
     assert_eq!(hard.skipped(), ["cutoff"]);
-    assert_eq!(Weight::of(&hard), Weight::of(&none));
+    assert_eq!(Weight::from_plan(&hard), Weight::from_plan(&none));
     assert_eq!(projects_by(&hard), projects_by(&none));
 }

@@ -8,7 +8,7 @@ use crate::types::{self, RegionData};
 
 /// The contents of the buffers after a frame.
 #[derive(Debug)]
-pub(crate) struct Kept {
+pub(crate) struct PreviousFrame {
     scene: u64,
     plan: Plan,
     /// True when the buffers are still those that the frame wrote.
@@ -19,28 +19,28 @@ pub(crate) struct Kept {
     region: Option<(RegionData, Layers)>,
 }
 
-impl Kept {
-    /// The work that is left for a plan, after a frame that left `kept`.
-    pub(crate) fn work(kept: Option<&Self>, scene: u64, plan: &Plan) -> Work {
+impl PreviousFrame {
+    /// The work that is left for a plan, after a frame that left `previous`.
+    pub(crate) fn work(previous: Option<&Self>, scene: u64, plan: &Plan) -> Work {
         let clip = plan.mode() != types::MODE_NONE;
-        let Some(kept) = kept.filter(|kept| kept.scene == scene) else {
+        let Some(previous) = previous.filter(|previous| previous.scene == scene) else {
             return Work::Whole { clip };
         };
-        let is_same = kept.plan.is_drawn_like(plan);
-        if kept.holds && is_same {
+        let is_same = previous.plan.is_drawn_like(plan);
+        if previous.holds && is_same {
             return Work::Draw;
         }
         // The same frame in other buffers is no reclipped frame.
-        let is_still = kept.plan.sees_like(plan) && !is_same;
+        let is_still = previous.plan.sees_like(plan) && !is_same;
         if is_still && clip {
-            let base = kept.base.filter(|_| kept.holds);
+            let base = previous.base.filter(|_| previous.holds);
             return Work::Reclip {
                 base: base.is_none(),
                 fresh: base.unwrap_or(true),
             };
         }
-        let has_classes = kept.holds
-            && kept
+        let has_classes = previous.holds
+            && previous
                 .region
                 .as_ref()
                 .is_some_and(|had| plan.has_classes_of(had));
@@ -51,8 +51,8 @@ impl Kept {
 
     /// The contents of the buffers once a plan has been recorded after a frame that left `before`.
     pub(crate) fn after(before: Option<Self>, scene: u64, plan: &Plan) -> Self {
-        let before = before.filter(|kept| kept.holds && kept.scene == scene);
-        let had = before.and_then(|kept| kept.region);
+        let before = before.filter(|previous| previous.holds && previous.scene == scene);
+        let had = before.and_then(|previous| previous.region);
         let (base, region) = match plan.work {
             Work::Whole { .. } if plan.mode() == types::MODE_NONE => (Some(true), had),
             Work::Whole { .. } => (None, Some((plan.data.region, plan.layers.clone()))),
@@ -78,7 +78,7 @@ impl Plan {
             && same(&self.data.weight, &other.data.weight)
             && same(&self.data.region, &other.data.region)
             && self.layers.keep_like(&other.layers)
-            && Weight::of(self) == Weight::of(other)
+            && Weight::from_plan(self) == Weight::from_plan(other)
     }
 
     /// True when stage clip would find the sides that it has found from these regions and layers.

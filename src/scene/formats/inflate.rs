@@ -2,7 +2,7 @@
 
 use std::io::{self, Read};
 
-use flate2::bufread::{DeflateDecoder, GzDecoder};
+use flate2::bufread::GzDecoder;
 use ruzstd::decoding::StreamingDecoder;
 
 use super::Failure;
@@ -57,11 +57,6 @@ pub(super) fn may_become(stream: usize, bytes: u64) -> bool {
     bytes <= (stream as u64).saturating_mul(MOST_DEFLATE)
 }
 
-/// The `size` bytes that a stream of deflate stands for; `what` is what is in it.
-pub(super) fn deflate(stream: &[u8], size: u64, what: &str) -> Result<Vec<u8>, Failure> {
-    exactly(DeflateDecoder::new(stream), size, "deflate", what)
-}
-
 /// The `size` bytes that a stream of zstd stands for; `what` is what is in it.
 pub(super) fn zstd(stream: &[u8], size: u64, what: &str) -> Result<Vec<u8>, Failure> {
     if size == 0 {
@@ -71,7 +66,13 @@ pub(super) fn zstd(stream: &[u8], size: u64, what: &str) -> Result<Vec<u8>, Fail
     exactly(decoder, size, "zstd", what)
 }
 
-fn exactly(from: impl Read, size: u64, kind: &str, what: &str) -> Result<Vec<u8>, Failure> {
+/// All bytes of a stream of a `kind`, which has to have `size`; `what` is what is in it.
+pub(super) fn exactly(
+    from: impl Read,
+    size: u64,
+    kind: &str,
+    what: &str,
+) -> Result<Vec<u8>, Failure> {
     let mut read = Vec::new();
     let mut from = from.take(size.saturating_add(1));
     from.read_to_end(&mut read)

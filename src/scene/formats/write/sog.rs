@@ -1,7 +1,12 @@
 //! Writing `.sog`, version 2: an archive of pictures, stored, since they are compressed already.
 
+use std::fmt::Display;
+use std::io::{Cursor, Write};
+
 use image_webp::{ColorType, WebPEncoder};
 use serde_json::json;
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, ZipWriter};
 
 use super::super::super::Gaussians;
 use super::super::sog::{CENTROIDS, LARGEST};
@@ -22,7 +27,7 @@ pub(super) const RANGES: Ranges = Ranges {
 
 pub(super) fn encode(gaussians: &Gaussians) -> Result<Vec<u8>> {
     let order = along_a_curve(gaussians);
-    let mut archive = Archive::default();
+    let mut archive = Archive(ZipWriter::new(Cursor::new(Vec::new())));
     let means: Vec<[f64; 3]> = order
         .iter()
         .map(|&at| {
@@ -138,16 +143,11 @@ pub(super) fn encode(gaussians: &Gaussians) -> Result<Vec<u8>> {
         });
     }
     archive.add("meta.json", meta.to_string().as_bytes())?;
-    Ok(archive.finish())
+    archive.finish()
 }
 
-/// A zip archive in the making.
-#[derive(Default)]
-struct Archive {
-    bytes: Vec<u8>,
-    directory: Vec<u8>,
-    count: u16,
-}
+/// A zip archive in the making, in which files are stored without a time.
+struct Archive(ZipWriter<Cursor<Vec<u8>>>);
 
 impl Archive {
     /// Adds a picture of `count` pixels that is about as wide as high.
@@ -185,46 +185,20 @@ impl Archive {
     }
 
     fn add(&mut self, name: &str, file: &[u8]) -> Result<()> {
-        let too_large = |_| Error::Invalid("the scene is too large for one .sog; divide it".into());
-        let at = u32::try_from(self.bytes.len()).map_err(too_large)?;
-        let size = u32::try_from(file.len()).map_err(too_large)?;
-        let mut crc = flate2::Crc::new();
-        crc.update(file);
-        // Version 2.0, no flags, stored, on the first of January 1980, which is no time at all.
-        let mut shared = Vec::new();
-        [20_u16, 0, 0, 0, 0x21]
-            .iter()
-            .for_each(|number| shared.extend(number.to_le_bytes()));
-        [crc.sum(), size, size]
-            .iter()
-            .for_each(|number| shared.extend(number.to_le_bytes()));
-        shared.extend((name.len() as u16).to_le_bytes());
-        shared.extend([0; 2]);
-        self.bytes.extend(b"PK\x03\x04");
-        self.bytes.extend(&shared);
-        self.bytes.extend(name.as_bytes());
-        self.bytes.extend(file);
-        self.directory.extend(b"PK\x01\x02\x14\x00");
-        self.directory.extend(&shared);
-        self.directory.extend([0; 10]);
-        self.directory.extend(at.to_le_bytes());
-        self.directory.extend(name.as_bytes());
-        self.count += 1;
-        Ok(())
+        let stored = SimpleFileOptions::DEFAULT.compression_method(CompressionMethod::Stored);
+        let begun = self.0.start_file(name, stored);
+        begun.map_err(too_large)?;
+        self.0.write_all(file).map_err(too_large)
     }
 
-    fn finish(mut self) -> Vec<u8> {
-        let at = self.bytes.len() as u32;
-        let size = self.directory.len() as u32;
-        self.bytes.append(&mut self.directory);
-        self.bytes.extend(b"PK\x05\x06\0\0\0\0");
-        [self.count; 2]
-            .iter()
-            .for_each(|count| self.bytes.extend(count.to_le_bytes()));
-        [size, at]
-            .iter()
-            .for_each(|number| self.bytes.extend(number.to_le_bytes()));
-        self.bytes.extend([0; 2]);
-        self.bytes
+    fn finish(self) -> Result<Vec<u8>> {
+        Ok(self.0.finish().map_err(too_large)?.into_inner())
     }
+}
+
+/// Nothing else can go wrong in memory.
+fn too_large(error: impl Display) -> Error {
+    Error::Invalid(format!(
+        "the scene is too large for one .sog ({error}); divide it"
+    ))
 }

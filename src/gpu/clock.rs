@@ -65,7 +65,7 @@ impl Clock {
 
 impl Device {
     /// The device's clock now; `None` where it cannot be read.
-    #[cfg_attr(not(feature = "lab"), doc(hidden))]
+    #[doc(hidden)]
     pub fn calibrate(&self) -> Option<Calibration> {
         Clock::new(self, self.instance())?.read()
     }

@@ -46,7 +46,7 @@ pub(super) const WHOLE: vk::ImageSubresourceRange = vk::ImageSubresourceRange {
 
 impl Device {
     /// Creates a colour target.
-    #[cfg_attr(not(feature = "lab"), doc(hidden))]
+    #[doc(hidden)]
     pub fn create_image(&self, desc: &ImageDesc<'_>) -> Result<Image> {
         Image::new(self, desc)
     }

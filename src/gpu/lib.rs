@@ -3,15 +3,8 @@
 //! Everything here records into a command buffer that somebody else submits. The exceptions are [`Device::headless`],
 //! [`Device::submit_and_wait`] with the uploads and downloads built on it, and a window's surface, swapchain and frames in
 //! flight.
-
-#![cfg_attr(
-    not(feature = "lab"),
-    allow(
-        dead_code,
-        unreachable_pub,
-        reason = "tests and measurements use more of it than frames do"
-    )
-)]
+//!
+//! Applications use the crate `rara`, which shows what of this is meant for them; the rest may change with any version.
 
 mod access;
 mod account;
@@ -66,49 +59,34 @@ mod validation;
 mod write_only;
 
 pub use account::NamedBytes;
-pub use attachments::Target;
+pub use attachments::{Attachments, DepthAttachment, Target};
 pub use desc::{AdoptDesc, DeviceDesc};
 pub use device::{Device, OnCompile};
 pub use devices::{DeviceInfo, list_devices};
+pub use draw::Drawer;
 pub use failure::failed;
 pub use features::Features;
-pub use lent::{LentMemory, Location, MemoryRequest, MemorySource};
-pub use pipeline_cache::PipelineCacheId;
-pub use pipeline_file::PipelineCache;
-pub use recorder::DepthImage;
-pub use requirements::LEAST_SUBGROUP;
-pub use requirements::{Support, check};
-pub use shader::Bindings;
-pub use shape::DeviceShape;
-pub use timer::PassSpan;
-pub use write_only::WriteOnly;
-
-#[cfg(not(feature = "lab"))]
-pub use inner::*;
+pub use image::{Image, ImageDesc};
 #[cfg(feature = "lab")]
-pub use inner::*;
-pub use pipeline_file::PipelineFile;
+pub use inspector::{CompiledShader, Dispatched, DispatchedGroups, Recorded};
+pub use lent::{LentMemory, Location, MemoryRequest, MemorySource};
+pub use memory::{Buffer, BufferDesc};
+pub use pipeline::{ComputeDesc, ComputePipeline, GraphicsDesc, GraphicsPipeline};
+pub use pipeline_cache::PipelineCacheId;
+pub use pipeline_file::{PipelineCache, PipelineFile};
+pub use recorder::{DepthImage, Groups, Recorder};
+pub use requirements::{LEAST_SUBGROUP, Support, check};
+pub use shader::{Bindings, BufferAccess, BufferUse, MAX_BUFFERS, Shader};
+pub use shape::DeviceShape;
+pub use timer::{PassSpan, Timer};
+pub use write_only::WriteOnly;
+#[doc(hidden)]
+pub use {
+    access::Access, clock::Calibration, recorder::group_grid, shader::MAX_PARAMS, tracker::Tracker,
+};
 #[cfg(feature = "view")]
 pub use {
     in_flight::{FRAMES, InFlight},
     surface::{Surface, Window},
     swapchain::Swapchain,
 };
-
-/// The tools that frames are recorded with; public for tests and measurements only.
-mod inner {
-    pub use super::attachments::{Attachments, DepthAttachment};
-    pub use super::draw::Drawer;
-    pub use super::image::{Image, ImageDesc};
-    #[cfg(feature = "lab")]
-    pub use super::inspector::{CompiledShader, Dispatched, DispatchedGroups, Recorded};
-    pub use super::memory::{Buffer, BufferDesc};
-    pub use super::pipeline::{ComputeDesc, ComputePipeline, GraphicsDesc, GraphicsPipeline};
-    #[cfg(feature = "lab")]
-    pub use super::recorder::group_grid;
-    pub use super::recorder::{Groups, Recorder};
-    pub use super::shader::{BufferAccess, BufferUse, MAX_BUFFERS, Shader};
-    pub use super::timer::Timer;
-    #[cfg(feature = "lab")]
-    pub use super::{access::Access, clock::Calibration, shader::MAX_PARAMS, tracker::Tracker};
-}

@@ -48,7 +48,7 @@ struct BufferInner {
 
 impl Device {
     /// Creates a buffer.
-    #[cfg_attr(not(feature = "lab"), doc(hidden))]
+    #[doc(hidden)]
     pub fn create_buffer(&self, desc: &BufferDesc<'_>) -> Result<Buffer> {
         Buffer::new(self, desc)
     }

@@ -14,7 +14,7 @@ const STAGING: u64 = 32 << 20;
 
 impl Device {
     /// Writes `data` at `offset` in a buffer and waits until it is there.
-    #[cfg_attr(not(feature = "lab"), doc(hidden))]
+    #[doc(hidden)]
     pub fn upload(&self, buffer: &Buffer, offset: u64, data: &[u8]) -> Result<()> {
         buffer.check_range(offset, data.len() as u64);
         if data.is_empty() {
@@ -36,13 +36,13 @@ impl Device {
     }
 
     /// Reads a whole buffer back, after everything submitted before.
-    #[cfg_attr(not(feature = "lab"), doc(hidden))]
+    #[doc(hidden)]
     pub fn download(&self, buffer: &Buffer) -> Result<Vec<u8>> {
         self.download_range(buffer, 0, buffer.size())
     }
 
     /// Reads `size` bytes at `offset` of a buffer back, after everything submitted before.
-    #[cfg_attr(not(feature = "lab"), doc(hidden))]
+    #[doc(hidden)]
     pub fn download_range(&self, buffer: &Buffer, offset: u64, size: u64) -> Result<Vec<u8>> {
         buffer.check_range(offset, size);
         let mut data = Vec::with_capacity(size as usize);

@@ -1,4 +1,4 @@
-//! Surfaces: what a clip is made of. A kind of surface is a `SurfaceKind` and a row of `surfaces!`.
+//! Surfaces: what a clip is made of. A kind of surface is a `SurfaceKind`, and an arm of `each_surface!`.
 
 use std::cmp::Ordering;
 
@@ -8,48 +8,25 @@ use super::surface_kind::SurfaceKind;
 use super::{Plane, Quadric};
 use crate::placement::Placement;
 
-/// Defines the kinds of surfaces, and `each_surface!`, which has one expression for all of them.
-macro_rules! surfaces {
-    (($d:tt) $($(#[$doc:meta])+ $kind:ident,)+) => {
-        /// A surface that divides space into what it keeps and what it does not.
-        #[derive(Debug, Clone, Copy, PartialEq)]
-        pub enum Surface {
-            $($(#[$doc])+ $kind($kind),)+
-        }
-
-        impl Surface {
-            /// The place of its kind among the kinds.
-            fn kind(&self) -> Option<usize> {
-                [$(matches!(self, Self::$kind(_))),+].iter().position(|is| *is)
-            }
-        }
-
-        $(
-            impl From<$kind> for Surface {
-                fn from(surface: $kind) -> Self {
-                    Self::$kind(surface)
-                }
-            }
-        )+
-
-        /// The value of an expression of a surface, of whatever kind it is.
-        #[doc(hidden)]
-        #[macro_export]
-        macro_rules! each_surface {
-            ($d surface:expr, $d kind:ident => $d value:expr) => {
-                match $d surface {
-                    $($crate::clip::Surface::$kind($d kind) => $d value,)+
-                }
-            };
-        }
-    };
+/// A surface that divides space into what it keeps and what it does not.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Surface {
+    /// Keeps a half-space.
+    Plane(Plane),
+    /// Keeps one side of a quadric.
+    Quadric(Quadric),
 }
 
-surfaces! { ($)
-    /// Keeps a half-space.
-    Plane,
-    /// Keeps one side of a quadric.
-    Quadric,
+/// The value of an expression of a surface, of whatever kind it is.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! each_surface {
+    ($surface:expr, $kind:ident => $value:expr) => {
+        match $surface {
+            $crate::clip::Surface::Plane($kind) => $value,
+            $crate::clip::Surface::Quadric($kind) => $value,
+        }
+    };
 }
 
 impl Surface {
@@ -89,11 +66,27 @@ impl Surface {
         let numbers = |one: &Self| each_surface!(one, surface => surface.numbers());
         let pairs = numbers(self).into_iter().zip(numbers(other));
         let mut orders = pairs.map(|(a, b)| (a + 0.0).total_cmp(&(b + 0.0))); // -0 is 0
-        let of_kinds = self.kind().cmp(&other.kind());
+        let kind = |one: &Self| match one {
+            Self::Plane(_) => 0,
+            Self::Quadric(_) => 1,
+        };
+        let of_kinds = kind(self).cmp(&kind(other));
         of_kinds.then_with(|| {
             orders
                 .find(|order| order.is_ne())
                 .unwrap_or(Ordering::Equal)
         })
+    }
+}
+
+impl From<Plane> for Surface {
+    fn from(plane: Plane) -> Self {
+        Self::Plane(plane)
+    }
+}
+
+impl From<Quadric> for Surface {
+    fn from(quadric: Quadric) -> Self {
+        Self::Quadric(quadric)
     }
 }

@@ -40,7 +40,7 @@ pub mod scene {
     };
     #[cfg(feature = "formats")]
     pub use rara_scene::{
-        Format, LoadReport, Loaded, Remark, load, load_from, load_from_with, load_with, save,
+        Format, LoadReport, Remark, SceneFile, load, load_from, load_from_with, load_with, save,
         save_ply, saved_format,
     };
 }
@@ -49,7 +49,7 @@ pub mod scene {
 pub use {ash, glam, gpu_allocator};
 
 #[cfg(feature = "bake")]
-pub use bake::{BakeCounts, BakeSettings, Baked, bake, bake_layer};
+pub use bake::{BakeCounts, BakeSettings, BakedGaussians, bake, bake_layer};
 pub use passes::{SceneBuffers, SceneLayer, Staging};
 pub use rara_base::error::{Error, Result};
 pub use rara_base::stats::{Counts, PassStatistics};

@@ -95,7 +95,7 @@ impl std::ops::AddAssign for BakeCounts {
 /// Gaussians that show a cut without a clip.
 #[derive(Debug, Clone, PartialEq, Default)]
 #[non_exhaustive]
-pub struct Baked {
+pub struct BakedGaussians {
     /// The Gaussians, in the order of those that they come from.
     pub gaussians: Gaussians,
     /// For each of them, the index of the one that it comes from.
@@ -138,7 +138,7 @@ pub struct Baked {
 /// # Errors
 /// [`Error::Invalid`] for a number of children that is not 1, 2 or 3, for a `sigma` that is not above zero, for a `leave`
 /// below zero, and for more Gaussians than can be numbered.
-pub fn bake(gaussians: &Gaussians, clip: &Clip, settings: &BakeSettings) -> Result<Baked> {
+pub fn bake(gaussians: &Gaussians, clip: &Clip, settings: &BakeSettings) -> Result<BakedGaussians> {
     bake_faded(gaussians, 1.0, clip, settings)
 }
 
@@ -148,7 +148,11 @@ pub fn bake(gaussians: &Gaussians, clip: &Clip, settings: &BakeSettings) -> Resu
 ///
 /// # Errors
 /// As [`bake`].
-pub fn bake_layer(layer: &Layer<'_>, clip: &Clip, settings: &BakeSettings) -> Result<Baked> {
+pub fn bake_layer(
+    layer: &Layer<'_>,
+    clip: &Clip,
+    settings: &BakeSettings,
+) -> Result<BakedGaussians> {
     let state = layer.state();
     let clip = layer.clip().unwrap_or(clip).in_scene(&state.placement);
     bake_faded(layer.gaussians(), state.opacity, &clip, settings)
@@ -159,7 +163,7 @@ fn bake_faded(
     opacity: f32,
     clip: &Clip,
     settings: &BakeSettings,
-) -> Result<Baked> {
+) -> Result<BakedGaussians> {
     clip.check()?;
     if !(1..=MAX_CHILDREN).contains(&settings.children) {
         return Err(Error::Invalid(format!(
@@ -228,8 +232,8 @@ fn fates(region: &Region<'_>, count: usize, children: usize) -> Vec<Fate> {
     fates
 }
 
-fn collect(gaussians: &Gaussians, fates: &[Fate]) -> Baked {
-    let mut baked = Baked::default();
+fn collect(gaussians: &Gaussians, fates: &[Fate]) -> BakedGaussians {
+    let mut baked = BakedGaussians::default();
     baked.gaussians.set_sh_degree(gaussians.sh_degree());
     let antialiased = gaussians.is_antialiased();
     baked.gaussians.set_antialiased(antialiased);

@@ -149,7 +149,7 @@ fn shaped(texts: &[&str], op: ClipOp) -> Clip {
     Clip::of_shapes(&shapes, op)
 }
 
-fn baked(gaussians: &Gaussians, clip: &Clip) -> Baked {
+fn baked(gaussians: &Gaussians, clip: &Clip) -> BakedGaussians {
     bake(gaussians, clip, &BakeSettings::default()).expect("it can be baked")
 }
 

@@ -45,7 +45,7 @@ pub fn write_atomically(
     path: &Path,
     write: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
 ) -> Result<()> {
-    let mut file = Unfinished::begin(path)?;
+    let mut file = PartialFile::begin(path)?;
     write(&mut file).map_err(Error::io(path))?;
     file.finish()
 }
@@ -68,7 +68,7 @@ fn end_of_links(path: &Path) -> Option<PathBuf> {
 /// A file that is written piece by piece. It stands beside the place where it goes, as [`write_atomically`] says, and is
 /// removed when it is dropped before it is finished.
 #[derive(Debug)]
-pub struct Unfinished {
+pub struct PartialFile {
     /// What it becomes.
     path: PathBuf,
     /// What it is called until then; none for a pipe or a terminal.
@@ -76,7 +76,7 @@ pub struct Unfinished {
     file: BufWriter<File>,
 }
 
-impl Unfinished {
+impl PartialFile {
     /// Begins the file.
     ///
     /// # Errors
@@ -126,7 +126,7 @@ impl Unfinished {
     }
 }
 
-impl Write for Unfinished {
+impl Write for PartialFile {
     fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
         self.file.write(bytes)
     }
@@ -136,7 +136,7 @@ impl Write for Unfinished {
     }
 }
 
-impl Drop for Unfinished {
+impl Drop for PartialFile {
     fn drop(&mut self) {
         if let Some(beside) = self.beside.take() {
             forget(&mut unfinished(), &beside, true);
@@ -214,7 +214,7 @@ mod tests {
         });
         assert!(failed.is_err() && fs::read(&file).expect("there") == b"new");
         // So does one that is given up.
-        let mut given_up = Unfinished::begin(&link).expect("begins");
+        let mut given_up = PartialFile::begin(&link).expect("begins");
         given_up.write_all(b"half").expect("writes");
         assert!(
             given_up

@@ -4,7 +4,7 @@ use std::ffi::c_char;
 use std::io::Cursor;
 
 use rara::Result;
-use rara::scene::{Loaded, Predicate, Property, load_from_with, load_with};
+use rara::scene::{Predicate, Property, SceneFile, load_from_with, load_with};
 
 use crate::boundary::{RaraResult, list};
 use crate::gaussians::RaraGaussians;
@@ -52,7 +52,7 @@ pub unsafe extern "C" fn rara_gaussians_load_from(
     })
 }
 
-fn made((loaded, properties): (Loaded, Vec<Property>)) -> RaraGaussians {
+fn made((loaded, properties): (SceneFile, Vec<Property>)) -> RaraGaussians {
     RaraGaussians {
         report: loaded.report,
         properties,

@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use clap::Args;
 use rara::scene::{self, Bounds};
 use rara::{
-    BakeCounts, BakeSettings, Baked, Camera, Clip, Gaussians, Layer, Mode, Placement, Scene,
-    bake_layer,
+    BakeCounts, BakeSettings, BakedGaussians, Camera, Clip, Gaussians, Layer, Mode, Placement,
+    Scene, bake_layer,
 };
 use serde::Serialize;
 
@@ -133,14 +133,14 @@ impl Bake {
             .children(self.children)
             .leave(self.leave);
         let mut counts = BakeCounts::default();
-        let mut baked: Vec<Baked> = Vec::new();
+        let mut baked: Vec<BakedGaussians> = Vec::new();
         let mut progress = ProgressLine::new("baking");
         let scene = loaded.scene();
         for (done, layer) in scene.layers().iter().enumerate() {
             progress.update(done as u64, scene.layers().len() as u64);
             let state = layer.state();
             if is_merged && !state.visible {
-                baked.push(Baked::default());
+                baked.push(BakedGaussians::default());
                 continue;
             }
             if is_merged && (state.placement != Placement::IDENTITY || state.opacity != 1.0) {
@@ -217,7 +217,7 @@ impl Bake {
     fn compare(
         &self,
         loaded: &SceneLayers,
-        baked: &[Baked],
+        baked: &[BakedGaussians],
         clip: &Clip,
     ) -> Result<Residual, Failure> {
         let scene = loaded.scene();
@@ -316,7 +316,7 @@ fn print_counts(counts: &BakeCounts) {
 }
 
 /// The files with what they hold: all in one, or one each.
-fn outputs(loaded: &SceneLayers, paths: &[PathBuf], baked: Vec<Baked>) -> Vec<Output> {
+fn outputs(loaded: &SceneLayers, paths: &[PathBuf], baked: Vec<BakedGaussians>) -> Vec<Output> {
     let gaussians = match paths.len() == baked.len() {
         true => baked.into_iter().map(|baked| baked.gaussians).collect(),
         false => {

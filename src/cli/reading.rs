@@ -27,7 +27,7 @@ pub(super) fn read(
     entry: &LayerEntry,
     file: (usize, usize),
     watch: Watch<'_>,
-) -> rara::Result<(scene::Loaded, Vec<Property>)> {
+) -> rara::Result<(scene::SceneFile, Vec<Property>)> {
     let path = &entry.path;
     let mut tell = |done, total| {
         let bytes = (done, total);

@@ -8,7 +8,9 @@ use ash::{khr, vk};
 use super::desc::DeviceDesc;
 use super::device::Device;
 use super::failure::failed;
-use super::inspector::{CompiledShader, Dispatched, DispatchedGroups, Inspector, Recorded};
+use super::inspector::{
+    CompiledShader, DispatchNote, DispatchedGroups, Inspector, RecordedCommands,
+};
 use super::instance::Instance;
 use super::recorder::Groups;
 use super::requirements::offers;
@@ -61,8 +63,8 @@ impl Device {
 
     /// The commands of the recording that was begun last.
     #[doc(hidden)]
-    pub fn recorded(&self) -> Recorded {
-        let mut found = Recorded::default();
+    pub fn recorded(&self) -> RecordedCommands {
+        let mut found = RecordedCommands::default();
         self.note(|recorded| found = recorded.clone());
         found
     }
@@ -113,7 +115,7 @@ impl Device {
 
     /// Begins the notes of a recording.
     pub(super) fn note_recording(&self) {
-        self.note(|recorded| *recorded = Recorded::default());
+        self.note(|recorded| *recorded = RecordedCommands::default());
     }
 
     pub(super) fn note_barrier(&self) {
@@ -130,11 +132,11 @@ impl Device {
         };
         self.note(|recorded| {
             let groups = groups();
-            recorded.dispatches.push(Dispatched { name, groups });
+            recorded.dispatches.push(DispatchNote { name, groups });
         });
     }
 
-    fn note(&self, change: impl FnOnce(&mut Recorded)) {
+    fn note(&self, change: impl FnOnce(&mut RecordedCommands)) {
         if let Some(notes) = self.inspector() {
             change(
                 &mut notes

@@ -23,16 +23,16 @@ pub struct CompiledShader {
 
 /// The commands of a recording.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Recorded {
+pub struct RecordedCommands {
     /// How many barriers there are.
     pub barriers: u32,
     /// The dispatches in order.
-    pub dispatches: Vec<Dispatched>,
+    pub dispatches: Vec<DispatchNote>,
 }
 
 /// A dispatch.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Dispatched {
+pub struct DispatchNote {
     /// The pipeline's name.
     pub name: &'static str,
     /// Its workgroups.
@@ -58,5 +58,5 @@ pub(super) struct Inspector {
     /// Where the driver tells what it has compiled.
     pub(super) executables: Option<khr::pipeline_executable_properties::Device>,
     pub(super) compiled: Mutex<Vec<CompiledShader>>,
-    pub(super) recorded: Mutex<Recorded>,
+    pub(super) recorded: Mutex<RecordedCommands>,
 }

@@ -68,7 +68,7 @@ pub use failure::failed;
 pub use features::Features;
 pub use image::{Image, ImageDesc};
 #[cfg(feature = "lab")]
-pub use inspector::{CompiledShader, Dispatched, DispatchedGroups, Recorded};
+pub use inspector::{CompiledShader, DispatchNote, DispatchedGroups, RecordedCommands};
 pub use lent::{LentMemory, Location, MemoryRequest, MemorySource};
 pub use memory::{Buffer, BufferDesc};
 pub use pipeline::{ComputeDesc, ComputePipeline, GraphicsDesc, GraphicsPipeline};

@@ -38,7 +38,7 @@ impl Device {
         let (physical, info) = (physical[chosen], infos[chosen].clone());
         let mut support = info.support.clone().map_err(Error::Device)?;
         let shape = DeviceShape::from_environment(&support)?;
-        let shape = DeviceShape::of(&info, &support, desc.shape, shape)?;
+        let shape = DeviceShape::choose(&info, &support, desc.shape, shape)?;
         support.pipeline_statistics &= desc.statistics;
 
         let family = support.queue_family;
@@ -164,7 +164,7 @@ impl Device {
             log::warn!("{error}; it is ignored");
             None
         });
-        let shape = DeviceShape::of(&info, &support, desc.shape, shape)?;
+        let shape = DeviceShape::choose(&info, &support, desc.shape, shape)?;
         if desc.allocator.is_some() && desc.memory.is_some() {
             return Err(Error::Invalid(
                 "the description has an allocator and another source of memory: give one of them"

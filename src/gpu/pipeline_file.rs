@@ -79,7 +79,7 @@ struct Seal {
 impl Seal {
     const BYTES: usize = 16;
 
-    fn of(data: &[u8]) -> Self {
+    fn from_data(data: &[u8]) -> Self {
         // FNV-1a is enough against a full disk or a broken one.
         Self {
             length: data.len() as u64,
@@ -118,7 +118,7 @@ impl PipelineFile {
                 // driver's.
                 let added = unsafe { device.add_pipeline_cache_data(&data) };
                 match added {
-                    Ok(()) => this.held = Some(Seal::of(&data)),
+                    Ok(()) => this.held = Some(Seal::from_data(&data)),
                     Err(error) => log::warn!("{}: {error}", this.path.display()),
                 }
             }
@@ -147,7 +147,7 @@ impl PipelineFile {
     }
 
     fn write(&mut self, data: &[u8]) -> Result<()> {
-        let seal = Seal::of(data);
+        let seal = Seal::from_data(data);
         if data.is_empty() || seal.length > MOST || self.held == Some(seal) {
             return Ok(());
         }
@@ -187,7 +187,7 @@ fn read(path: &Path, id: &PipelineCacheId) -> io::Result<Vec<u8>> {
     let Some((seal, data)) = sealed else {
         return refuse("not a file of compiled pipelines");
     };
-    if Seal::of(data).bytes() != seal {
+    if Seal::from_data(data).bytes() != seal {
         return refuse("damaged");
     }
     if !id.matches(data) {

@@ -31,7 +31,7 @@ const SHARED_MEMORY: u32 = 28 << 10;
 impl DeviceShape {
     /// The shape of a device and the reason for it: the one that is wanted, or else the one that suits its kind.
     #[doc(hidden)]
-    pub fn of(
+    pub fn choose(
         info: &DeviceInfo,
         support: &Support,
         wanted: Option<Self>,

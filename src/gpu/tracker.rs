@@ -51,7 +51,7 @@ struct History {
 }
 
 impl History {
-    fn of(buffer: vk::Buffer) -> Self {
+    fn new(buffer: vk::Buffer) -> Self {
         Self {
             buffer,
             writers: Set::default(),
@@ -162,7 +162,7 @@ impl Tracker {
     fn note_uses(&mut self, uses: &[(vk::Buffer, Access)]) {
         for (buffer, _) in uses.iter().filter(|(_, access)| access.writes()) {
             let at = self.index(*buffer);
-            self.buffers[at] = History::of(*buffer);
+            self.buffers[at] = History::new(*buffer);
         }
         for (buffer, access) in uses {
             let at = self.index(*buffer);
@@ -182,7 +182,7 @@ impl Tracker {
             .iter()
             .position(|h| h.buffer == buffer)
             .unwrap_or_else(|| {
-                self.buffers.push(History::of(buffer));
+                self.buffers.push(History::new(buffer));
                 self.buffers.len() - 1
             })
     }

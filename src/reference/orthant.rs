@@ -94,7 +94,7 @@ struct Correlation<T> {
 }
 
 impl<T: Real> Correlation<T> {
-    fn of(a: &Threshold<T>, b: &Threshold<T>) -> Self {
+    fn from_thresholds(a: &Threshold<T>, b: &Threshold<T>) -> Self {
         let sign = T::one().copysign(a.direction.dot(&b.direction));
         let apart = T::of(0.5) * (a.direction - b.direction * sign).squared();
         Self {
@@ -106,7 +106,7 @@ impl<T: Real> Correlation<T> {
 
 /// The chance that two variables are positive.
 pub fn both<T: Real>(a: &Threshold<T>, b: &Threshold<T>) -> T {
-    both_positive(a.z, b.z, Correlation::of(a, b))
+    both_positive(a.z, b.z, Correlation::from_thresholds(a, b))
 }
 
 /// The chance that all variables are positive.
@@ -130,7 +130,7 @@ pub fn orthant<T: Real>(thresholds: impl Iterator<Item = Threshold<T>>) -> T {
     match &open[..] {
         [] => one,
         [one] => one.z.phi(),
-        [a, b] => both_positive(a.z, b.z, Correlation::of(a, b)),
+        [a, b] => both_positive(a.z, b.z, Correlation::from_thresholds(a, b)),
         [a, b, c] => three_positive([a, b, c]),
         many => many_positive(many),
     }
@@ -200,7 +200,7 @@ fn both_positive<T: Real>(h: T, k: T, correlation: Correlation<T>) -> T {
 /// The chance that three variables are positive.
 fn three_positive<T: Real>(open: [&Threshold<T>; 3]) -> T {
     let (zero, one) = (T::zero(), T::one());
-    let joint = |i: usize, j: usize| Correlation::of(open[i], open[j]);
+    let joint = |i: usize, j: usize| Correlation::from_thresholds(open[i], open[j]);
     let both = |i: usize, j: usize| both_positive(open[i].z, open[j].z, joint(i, j));
     let share = |i: usize| open[i].z.phi();
     // The first variable is the one whose two others depend most on each other.
@@ -248,7 +248,11 @@ fn three_positive<T: Real>(open: [&Threshold<T>; 3]) -> T {
 fn many_positive<T: Real>(open: &[Threshold<T>]) -> T {
     let tiny = T::of(1e-6);
     let both = |i: usize, j: usize| {
-        both_positive(open[i].z, open[j].z, Correlation::of(&open[i], &open[j]))
+        both_positive(
+            open[i].z,
+            open[j].z,
+            Correlation::from_thresholds(&open[i], &open[j]),
+        )
     };
     // The strictest of the other kind, if there is one.
     let other = open.iter().position(|t| t.far != open[0].far);

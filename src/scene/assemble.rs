@@ -2,7 +2,7 @@
 
 use glam::{DVec4, Quat, Vec3};
 
-use super::{Format, Gaussians, LoadReport, Loaded, Property, sh_coefficients};
+use super::{Format, Gaussians, LoadReport, Property, SceneFile, sh_coefficients};
 
 /// Slots of a row, see [`FIXED`]: the scales, by default their logarithms.
 pub(super) const SCALES: usize = 3;
@@ -170,8 +170,8 @@ impl Assembler {
     }
 
     /// The scene and the properties, and the report on what was done to them.
-    pub(super) fn finish(self) -> (Loaded, Vec<Property>) {
-        let loaded = Loaded {
+    pub(super) fn finish(self) -> (SceneFile, Vec<Property>) {
+        let loaded = SceneFile {
             gaussians: self.gaussians,
             report: self.report,
             format: Format::Ply,
@@ -319,7 +319,7 @@ mod tests {
         let mut assembler = assembler.stored(ColumnForm::Plain);
         rows.iter().for_each(|row| assembler.push(row));
         let (
-            Loaded {
+            SceneFile {
                 gaussians, report, ..
             },
             _,

@@ -66,7 +66,7 @@ pub use property::Property;
 #[cfg(feature = "formats")]
 pub use {
     format::Format,
-    load::{Loaded, load, load_from, load_from_with, load_with},
+    load::{SceneFile, load, load_from, load_from_with, load_with},
     report::{LoadReport, Remark},
     save::{save, save_ply, saved_format},
 };

@@ -29,7 +29,7 @@ impl<T: Read + Seek> Source for T {}
 
 /// A scene as loaded, and what the loader did to it.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Loaded {
+pub struct SceneFile {
     /// The scene.
     pub gaussians: Gaussians,
     /// Elements that were dropped or repaired.
@@ -41,7 +41,7 @@ pub struct Loaded {
     pub antialiased: Option<bool>,
 }
 
-impl Loaded {
+impl SceneFile {
     /// Notes what the file says of how its Gaussians were trained; they are drawn so.
     pub(super) fn says(&mut self, antialiased: Option<bool>) {
         self.antialiased = antialiased;
@@ -64,7 +64,7 @@ impl Loaded {
 /// # Errors
 /// [`Error::Io`] if the file can't be read, [`Error::Format`] if it is not a scene or is cut off, [`Error::Memory`] if
 /// it doesn't fit. Single bad elements are no error: see [`LoadReport`].
-pub fn load(path: &Path, progress: &mut dyn FnMut(u64, u64)) -> Result<Loaded> {
+pub fn load(path: &Path, progress: &mut dyn FnMut(u64, u64)) -> Result<SceneFile> {
     load_with(path, &[], progress).map(|(loaded, _)| loaded)
 }
 
@@ -78,7 +78,7 @@ pub fn load_with(
     path: &Path,
     properties: &[&str],
     progress: &mut dyn FnMut(u64, u64),
-) -> Result<(Loaded, Vec<Property>)> {
+) -> Result<(SceneFile, Vec<Property>)> {
     // Before opening it, which would wait for a pipe's writer.
     let metadata = std::fs::metadata(path).map_err(Error::io(path))?;
     #[cfg(feature = "formats")]
@@ -108,7 +108,7 @@ pub fn load_from<R: Read + Seek>(
     source: R,
     name: &Path,
     progress: &mut dyn FnMut(u64, u64),
-) -> Result<Loaded> {
+) -> Result<SceneFile> {
     load_from_with(source, name, &[], progress).map(|(loaded, _)| loaded)
 }
 
@@ -121,7 +121,7 @@ pub fn load_from_with<R: Read + Seek>(
     name: &Path,
     properties: &[&str],
     progress: &mut dyn FnMut(u64, u64),
-) -> Result<(Loaded, Vec<Property>)> {
+) -> Result<(SceneFile, Vec<Property>)> {
     read(source, name, None, properties, progress)
 }
 
@@ -131,7 +131,7 @@ fn read<R: Read + Seek>(
     folder: Option<&Path>,
     properties: &[&str],
     progress: &mut dyn FnMut(u64, u64),
-) -> Result<(Loaded, Vec<Property>)> {
+) -> Result<(SceneFile, Vec<Property>)> {
     let total = source.seek(SeekFrom::End(0)).map_err(Error::io(name))?;
     source.rewind().map_err(Error::io(name))?;
     let mut start = Vec::new();

@@ -127,12 +127,12 @@ impl Predicate {
                 each(&|i| region.keeps(gaussians.positions()[i].as_dvec3()))
             }
             Self::Compare(attribute, comparison, number) => {
-                let values = Values::of(attribute, gaussians, properties, placement)?;
+                let values = Values::of_attribute(attribute, gaussians, properties, placement)?;
                 let number = values.rounded(*number);
                 each(&|i| comparison.holds((values.get)(i), number))
             }
             Self::In(attribute, ranges) => {
-                let values = Values::of(attribute, gaussians, properties, placement)?;
+                let values = Values::of_attribute(attribute, gaussians, properties, placement)?;
                 let ranges: Vec<_> = ranges
                     .iter()
                     .map(|ends| ends.map(|end| values.rounded(end)))
@@ -184,7 +184,7 @@ struct Values<'a> {
 }
 
 impl<'a> Values<'a> {
-    fn of(
+    fn of_attribute(
         attribute: &Attribute,
         gaussians: &'a Gaussians,
         properties: &'a [Property],

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use rara::Gaussians;
 use rara::glam::Vec3;
-use rara::scene::{Kind, Loaded, generate, load, load_from, load_from_with, save};
+use rara::scene::{Kind, SceneFile, generate, load, load_from, load_from_with, save};
 
 use crate::folder::Folder;
 use crate::ply::made::{FIXED, Format, floats, scene_file};
@@ -15,7 +15,7 @@ fn antialiased() -> Gaussians {
     scene
 }
 
-fn loaded(bytes: Vec<u8>) -> Loaded {
+fn loaded(bytes: Vec<u8>) -> SceneFile {
     let name = Path::new("made up");
     load_from(std::io::Cursor::new(bytes), name, &mut |_, _| ()).expect("it is a scene")
 }

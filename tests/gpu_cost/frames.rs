@@ -7,7 +7,7 @@ use rara::{
     Camera, Clip, ClipOp, DepthDesc, DepthMap, Error, ExpectedDepthDesc, Gaussians, Layer, Mode,
     Preset, Raster, Renderer, RendererDesc, Scene, SceneBuffers, Settings, ShFormat, Shape,
 };
-use rara_gpu::{Bindings, Device, DeviceDesc, DeviceShape, Drawer, Image, Recorded};
+use rara_gpu::{Bindings, Device, DeviceDesc, DeviceShape, Drawer, Image, RecordedCommands};
 
 use crate::common;
 
@@ -89,12 +89,12 @@ impl Frame {
 
 /// What a drawn frame has left.
 pub struct Drawn {
-    pub recorded: Recorded,
+    pub recorded: RecordedCommands,
     renderer: Renderer,
 }
 
 impl Drawn {
-    pub fn new(recorded: Recorded, renderer: Renderer) -> Self {
+    pub fn new(recorded: RecordedCommands, renderer: Renderer) -> Self {
         Self { recorded, renderer }
     }
 
@@ -170,7 +170,7 @@ impl Frames {
     /// Draws a frame, from nothing but the frames that it is to take over from. Nothing is drawn of one for which the host has
     /// to have a depth, only its pipelines are made.
     pub fn draw(&self, frame: &Frame) -> Drawn {
-        let mut recorded = Recorded::default();
+        let mut recorded = RecordedCommands::default();
         let renderer = self.configured(frame, |renderer, scene, configured| {
             let submitted = self.device.submit_and_wait(|cmd| {
                 // SAFETY: `cmd` is recording outside rendering, and all that is used outlives the wait.

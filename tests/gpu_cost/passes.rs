@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use rara::Raster;
 use rara::types::{FrameCounts, FrameData};
 use rara_base::limits;
-use rara_gpu::{Dispatched, DispatchedGroups};
+use rara_gpu::{DispatchNote, DispatchedGroups};
 use rara_lab::measure::gpu_model::{COSTS, FrameNumbers};
 
 use crate::budget::{self, Rule, Table};
@@ -177,7 +177,7 @@ pub fn numbers(drawn: &Drawn) -> FrameNumbers {
 }
 
 /// The workgroups of a dispatch, by the command that its frame has left.
-pub fn groups(drawn: &Drawn, dispatch: &Dispatched) -> u64 {
+pub fn groups(drawn: &Drawn, dispatch: &DispatchNote) -> u64 {
     match &dispatch.groups {
         DispatchedGroups::Count(count) => (*count).into(),
         DispatchedGroups::Indirect { buffer, offset } => {

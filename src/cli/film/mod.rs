@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use clap::builder::{OsStringValueParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use rara::{Error, Picture, Result};
-use rara_base::files::Unfinished;
+use rara_base::files::PartialFile;
 
 use super::failure::Failure;
 use super::output;
@@ -146,7 +146,7 @@ impl FilmArgs {
         let fps = self.fps.unwrap_or(FPS);
         let place = match file == Path::new(STANDARD) {
             true => FilmTarget::Stdout,
-            false => FilmTarget::File(Unfinished::begin(file)?),
+            false => FilmTarget::File(PartialFile::begin(file)?),
         };
         Ok(match (kind, place) {
             (FilmFormat::Apng, place) => Film::Apng(Apng::begin(place, file, size, frames, fps)?),
@@ -189,7 +189,7 @@ impl Film {
 #[derive(Debug)]
 pub(super) enum FilmTarget {
     Stdout,
-    File(Unfinished),
+    File(PartialFile),
 }
 
 impl FilmTarget {

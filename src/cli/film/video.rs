@@ -8,7 +8,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
 
 use rara::{Error, Result};
-use rara_base::files::Unfinished;
+use rara_base::files::PartialFile;
 
 /// The kinds of file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -80,13 +80,13 @@ pub(in super::super) struct Video {
     pictures: Option<ChildStdin>,
     /// What it complains of.
     complaint: Option<JoinHandle<String>>,
-    place: Option<Unfinished>,
+    place: Option<PartialFile>,
     file: PathBuf,
 }
 
 impl Video {
     pub(super) fn begin(
-        place: Unfinished,
+        place: PartialFile,
         file: &Path,
         container: Container,
         ((width, height), fps): ((u32, u32), u16),
@@ -160,7 +160,7 @@ impl Video {
     pub(super) fn finish(mut self) -> Result<()> {
         self.end()?;
         let place = self.place.take();
-        place.map_or(Ok(()), Unfinished::finish)
+        place.map_or(Ok(()), PartialFile::finish)
     }
 
     /// Waits for the encoder; fails where it did.

@@ -25,7 +25,7 @@ struct Stretch<T> {
 }
 
 impl<T: Real> Stretch<T> {
-    fn of(crossed: &SurfaceCrossing<T>) -> Self {
+    fn from_crossing(crossed: &SurfaceCrossing<T>) -> Self {
         let place = |z: T, first: bool| match (crossed.first.far, first) {
             (true, true) | (false, false) => -z,
             (false, true) | (true, false) => z,
@@ -83,7 +83,7 @@ impl<T: Real> Combination<T> {
         let stretches: Vec<_> = self
             .0
             .iter()
-            .map(|(surface, _)| Stretch::of(&sight.crossed(surface)))
+            .map(|(surface, _)| Stretch::from_crossing(&sight.crossed(surface)))
             .collect();
         self.walked(&stretches, (start, end), measure)
     }

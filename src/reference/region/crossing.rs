@@ -48,7 +48,7 @@ impl<T: Real> Sight<T> {
     /// The line of sight at an offset from the splat's centre, pixels.
     pub(crate) fn new(gradients: [Vec3<T>; 2], delta: [T; 2]) -> Self {
         let (gradients, factor, low_pass) = scaled(gradients);
-        Self::of(gradients, delta.map(|d| d * factor), low_pass)
+        Self::from_gradients(gradients, delta.map(|d| d * factor), low_pass)
     }
 
     /// The line itself without what the low-pass adds, and its point nearest the centre. Gaussians without thickness may
@@ -59,10 +59,10 @@ impl<T: Real> Sight<T> {
         let factor = T::one() / largest;
         let gradients = [b1 * factor, b2 * factor];
         let is_line = gradients[0].cross(gradients[1]).squared() > T::zero();
-        is_line.then(|| Self::of(gradients, delta.map(|d| d * factor), T::zero()))
+        is_line.then(|| Self::from_gradients(gradients, delta.map(|d| d * factor), T::zero()))
     }
 
-    fn of([b1, b2]: [Vec3<T>; 2], [dx, dy]: [T; 2], low_pass: T) -> Self {
+    fn from_gradients([b1, b2]: [Vec3<T>; 2], [dx, dy]: [T; 2], low_pass: T) -> Self {
         let c = b1.cross(b2);
         let det = determinant([b1, b2], c, low_pass);
         let (dx, dy) = (dx / det, dy / det);

@@ -92,7 +92,7 @@ struct Section<'a> {
 
 impl<'a> Section<'a> {
     /// The section whose header is `head`; its data is next in `data`.
-    fn of(head: &'a [u8], data: &mut Bytes<'a>, level: u16, number: u32) -> Result<Self, String> {
+    fn read(head: &'a [u8], data: &mut Bytes<'a>, level: u16, number: u32) -> Result<Self, String> {
         let what = &format!("section {number}");
         let mut head = Bytes(head);
         let (splats, room) = (head.u32(what)?, head.u32(what)?);
@@ -175,7 +175,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<FormatOutput, Failure> {
     let heads = heads.chunks_exact(SECTION as usize).take(used as usize);
     let mut sections = Vec::new();
     for (number, head) in (0..).zip(heads) {
-        sections.push(Section::of(head, &mut data, header.level, number)?);
+        sections.push(Section::read(head, &mut data, header.level, number)?);
     }
     let count: u64 = sections
         .iter()

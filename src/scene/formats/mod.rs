@@ -16,7 +16,7 @@ use std::path::Path;
 pub(super) use self::write::WRITERS;
 use super::assemble::{Assembler, ColumnForm};
 use super::load::{Input, Progress};
-use super::{Format, Gaussians, LoadReport, Loaded, Property, SH_0};
+use super::{Format, Gaussians, LoadReport, Property, SH_0, SceneFile};
 use crate::placement::Placement;
 use rara_base::counted::counted;
 use rara_base::error::{Error, Result};
@@ -195,7 +195,7 @@ pub(super) fn read(
     start: &[u8],
     input: Input<'_>,
     progress: &mut Progress<'_>,
-) -> Result<(Loaded, Vec<Property>)> {
+) -> Result<(SceneFile, Vec<Property>)> {
     let Input { source, name, .. } = input;
     let memory = |what: String| {
         Error::Memory(format!(
@@ -229,7 +229,7 @@ pub(super) fn read(
             ),
         ));
     }
-    let loaded = Loaded {
+    let loaded = SceneFile {
         // Writers that know nothing of it leave the flag of their format unset.
         antialiased: made.gaussians.is_antialiased().then_some(true),
         gaussians: made.gaussians,

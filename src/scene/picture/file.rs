@@ -26,7 +26,7 @@ enum PictureFormat {
 }
 
 impl PictureFormat {
-    fn of(path: &Path) -> Result<Self> {
+    fn from_path(path: &Path) -> Result<Self> {
         let extension = path
             .extension()
             .unwrap_or_default()
@@ -63,7 +63,7 @@ impl Picture {
     /// all.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
         let path = path.as_ref();
-        let kind = PictureFormat::of(path)?;
+        let kind = PictureFormat::from_path(path)?;
         let encoded = self.encoded(kind, PngCompression::default());
         let bytes = encoded.map_err(|error| {
             Error::format(path, format!("the picture could not be encoded: {error}"))

@@ -61,7 +61,7 @@ impl PlyHeader {
             size: size as u64,
             lines: lines.len() as u64,
             line_end,
-            kind: TrainerKind::of(&lines),
+            kind: TrainerKind::from_comments(&lines),
         })
     }
 }

@@ -38,7 +38,7 @@ pub(super) struct Layout<'a> {
 impl<'a> Layout<'a> {
     /// Maps `header`'s properties by name, those of a Gaussian and `asked` ones, or says why this is no scene or what it
     /// lacks.
-    pub(super) fn of(header: &'a PlyHeader, asked: &[&str]) -> Result<Self, String> {
+    pub(super) fn from_header(header: &'a PlyHeader, asked: &[&str]) -> Result<Self, String> {
         let at = header.elements.iter().position(|e| e.name == "vertex");
         let at = at.ok_or("the file has no `vertex` element, which holds the Gaussians of a 3DGS .ply; export the scene again")?;
         let vertex = &header.elements[at];

@@ -17,7 +17,7 @@ use self::header::PlyHeader;
 use self::layout::Layout;
 use self::trained::TrainerKind;
 use super::assemble::Assembler;
-use super::load::{Input, Loaded, Progress};
+use super::load::{Input, Progress, SceneFile};
 use super::{Format, Property};
 use rara_base::counted::counted;
 use rara_base::error::{Error, Result};
@@ -26,7 +26,7 @@ use rara_base::error::{Error, Result};
 pub(super) fn read(
     input: Input<'_>,
     progress: &mut Progress<'_>,
-) -> Result<(Loaded, Vec<Property>)> {
+) -> Result<(SceneFile, Vec<Property>)> {
     let Input {
         source,
         name,
@@ -73,7 +73,7 @@ pub(super) fn read(
         loaded.says(header.kind.map(|kind| kind == TrainerKind::Antialiased));
         return Ok((loaded, properties));
     }
-    let layout = Layout::of(&header, asked).map_err(format)?;
+    let layout = Layout::from_header(&header, asked).map_err(format)?;
     layout.check_size(header.encoding, left).map_err(format)?;
     let properties = layout.properties.clone();
     let assembler = Assembler::with_room(layout.count, layout.sh_degree, properties);

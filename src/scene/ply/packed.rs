@@ -124,7 +124,7 @@ impl Table {
 struct Ranges([Column; 3], [Column; 3]);
 
 impl Ranges {
-    fn of(chunks: &Table, low: [&str; 3], high: [&str; 3]) -> Result<Self, String> {
+    fn from_chunks(chunks: &Table, low: [&str; 3], high: [&str; 3]) -> Result<Self, String> {
         Ok(Self(
             chunks.needed(low, "chunk")?,
             chunks.needed(high, "chunk")?,
@@ -197,15 +197,15 @@ fn assemble(
     harmonics: Option<&Table>,
 ) -> Result<Assembler, Failure> {
     let (low, high) = (["min_x", "min_y", "min_z"], ["max_x", "max_y", "max_z"]);
-    let positions = Ranges::of(chunks, low, high)?;
+    let positions = Ranges::from_chunks(chunks, low, high)?;
     let (low, high) = (
         ["min_scale_x", "min_scale_y", "min_scale_z"],
         ["max_scale_x", "max_scale_y", "max_scale_z"],
     );
-    let scales = Ranges::of(chunks, low, high)?;
+    let scales = Ranges::from_chunks(chunks, low, high)?;
     // Without a range, bytes are the colours themselves.
     let colours = match chunks.column("min_r") {
-        Some(_) => Some(Ranges::of(
+        Some(_) => Some(Ranges::from_chunks(
             chunks,
             ["min_r", "min_g", "min_b"],
             ["max_r", "max_g", "max_b"],

@@ -25,7 +25,7 @@ pub(super) enum TrainerKind {
 impl TrainerKind {
     /// The kind by the last comment of a header that says one, if any does: `SplatRenderMode: mip` of Brush, which others write too, or
     /// `antialiased 1` of Postshot.
-    pub(super) fn of(lines: &[String]) -> Option<Self> {
+    pub(super) fn from_comments(lines: &[String]) -> Option<Self> {
         lines.iter().rev().find_map(|line| {
             let line = line.trim().to_ascii_lowercase();
             let comment = line
@@ -103,7 +103,7 @@ mod tests {
     #[test]
     fn the_last_comment_that_says_a_kind_counts() {
         let kind = |lines: &[&str]| {
-            TrainerKind::of(&lines.iter().map(|l| l.to_string()).collect::<Vec<_>>())
+            TrainerKind::from_comments(&lines.iter().map(|l| l.to_string()).collect::<Vec<_>>())
         };
         for (lines, expected) in [
             (

@@ -12,8 +12,8 @@ mod written;
 use std::io::Cursor;
 use std::path::Path;
 
-use rara::scene::{Loaded, load_from};
+use rara::scene::{SceneFile, load_from};
 
-fn load_bytes(bytes: &[u8]) -> rara::Result<Loaded> {
+fn load_bytes(bytes: &[u8]) -> rara::Result<SceneFile> {
     load_from(Cursor::new(bytes), Path::new("entry"), &mut |_, _| ())
 }

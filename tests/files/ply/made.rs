@@ -4,10 +4,10 @@ use std::fmt::Write as _;
 use std::io::Write as _;
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use rara::scene::{Gaussians, Loaded, load};
+use rara::scene::{Gaussians, SceneFile, load};
 
 /// Writes `bytes` to a file of its own, loads it and removes it.
-pub(crate) fn load_bytes(bytes: &[u8]) -> rara::Result<Loaded> {
+pub(crate) fn load_bytes(bytes: &[u8]) -> rara::Result<SceneFile> {
     static NEXT: AtomicU32 = AtomicU32::new(0);
     let number = NEXT.fetch_add(1, Ordering::Relaxed);
     let path = std::env::temp_dir().join(format!("rara-ply-{}-{number}.ply", std::process::id()));

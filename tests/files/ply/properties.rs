@@ -3,11 +3,11 @@
 use std::io::Cursor;
 use std::path::Path;
 
-use rara::scene::{Loaded, Predicate, Property, load_from_with};
+use rara::scene::{Predicate, Property, SceneFile, load_from_with};
 
 use super::made::*;
 
-fn load_asked(bytes: &[u8], names: &[&str]) -> rara::Result<(Loaded, Vec<Property>)> {
+fn load_asked(bytes: &[u8], names: &[&str]) -> rara::Result<(SceneFile, Vec<Property>)> {
     load_from_with(
         Cursor::new(bytes),
         Path::new("made.ply"),

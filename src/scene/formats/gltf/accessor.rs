@@ -54,7 +54,7 @@ impl ComponentType {
 
 impl Accessor {
     /// The accessor of a number, of `count` elements with `parts` parts (or three of four, for colours without alpha).
-    pub(super) fn of(
+    pub(super) fn from_json(
         document: &Value,
         buffers: &mut Buffers<'_>,
         number: usize,

@@ -78,7 +78,7 @@ pub(super) fn read_document(
     for (number, placement) in nodes::meshes(document)? {
         let mesh = match meshes.entry(number) {
             Entry::Occupied(known) => known.into_mut(),
-            Entry::Vacant(unknown) => unknown.insert(Mesh::of(document, number)?),
+            Entry::Vacant(unknown) => unknown.insert(Mesh::from_json(document, number)?),
         };
         found += mesh.splats.len() as u64;
         others += mesh.others;
@@ -122,7 +122,7 @@ struct Mesh<'a> {
 }
 
 impl<'a> Mesh<'a> {
-    fn of(document: &'a Value, number: usize) -> Result<Self, Failure> {
+    fn from_json(document: &'a Value, number: usize) -> Result<Self, Failure> {
         let mesh = list(document, "meshes").get(number).ok_or_else(|| {
             format!(
                 "a node of the glTF has mesh {number}, which there is not; export the scene again"
@@ -222,7 +222,9 @@ fn read_primitive(
         })?;
     let mut get = |name: &str, parts: usize| -> Result<Option<Accessor>, Failure> {
         match attribute(attributes, name) {
-            Some(number) => Accessor::of(document, buffers, number, name, count, parts).map(Some),
+            Some(number) => {
+                Accessor::from_json(document, buffers, number, name, count, parts).map(Some)
+            }
             None => Ok(None),
         }
     };

@@ -25,7 +25,7 @@ impl Range {
         }
     }
 
-    fn of(part: &Value, name: &str, channels: usize) -> Result<Self, String> {
+    fn from_json(part: &Value, name: &str, channels: usize) -> Result<Self, String> {
         if let Some(book) = part.get("codebook") {
             // An entry that no pixel has may be null.
             let numbers = book.as_array().map(|all| {
@@ -114,7 +114,7 @@ pub(super) struct Meta<'a> {
 }
 
 impl<'a> Meta<'a> {
-    pub(super) fn of(document: &'a Value) -> Result<Self, String> {
+    pub(super) fn from_json(document: &'a Value) -> Result<Self, String> {
         let is_first = match document.get("version").map(Value::as_f64) {
             None | Some(Some(1.0)) => true,
             Some(Some(2.0)) => false,
@@ -184,7 +184,7 @@ impl<'a> Meta<'a> {
                 Some(Harmonics {
                     count,
                     bands,
-                    values: Range::of(part, "shN", 1)?,
+                    values: Range::from_json(part, "shN", 1)?,
                     centroids,
                     labels,
                 })
@@ -200,9 +200,9 @@ impl<'a> Meta<'a> {
             is_antialiased: antialias == Some(true) || model == Some("antialiased"),
             bounds: ends(means, "means", 3)?,
             means: [means_low, means_high],
-            scales: (scales_file, Range::of(scales, "scales", 3)?),
+            scales: (scales_file, Range::from_json(scales, "scales", 3)?),
             quats: quats_file,
-            sh0: (sh0_file, Range::of(sh0, "sh0", 4)?),
+            sh0: (sh0_file, Range::from_json(sh0, "sh0", 4)?),
             harmonics,
         })
     }

@@ -50,7 +50,7 @@ fn read(
     document: &Value,
     get: &dyn Fn(&str) -> Result<Vec<u8>, Failure>,
 ) -> Result<FormatOutput, Failure> {
-    let meta = Meta::of(document)?;
+    let meta = Meta::from_json(document)?;
     let count = meta.count;
     let names = [
         meta.means[0],

@@ -11,7 +11,7 @@ pub(super) struct Codebook(pub(super) Vec<f64>);
 impl Codebook {
     /// A codebook for these values: between numbers that begin at equal shares of the values, half at equal steps of
     /// their range, each value belongs to the nearest, and each number moves to the mean of its values.
-    pub(super) fn of(values: impl Iterator<Item = f64>) -> Self {
+    pub(super) fn from_values(values: impl Iterator<Item = f64>) -> Self {
         let mut sorted: Vec<f64> = values.collect();
         sorted.sort_unstable_by(f64::total_cmp);
         let (Some(&low), Some(&high)) = (sorted.first(), sorted.last()) else {
@@ -126,15 +126,15 @@ mod tests {
     #[test]
     fn a_codebook_has_all_of_few_values_and_is_near_to_many() {
         let few = [3.0, -1.0, 0.25, 3.0];
-        let book = Codebook::of(few.into_iter());
+        let book = Codebook::from_values(few.into_iter());
         few.iter()
             .for_each(|value| assert_eq!(book.0[usize::from(book.nearest(*value))], *value));
-        let book = Codebook::of((0..10_000).map(f64::from));
+        let book = Codebook::from_values((0..10_000).map(f64::from));
         for value in (0..10_000).map(f64::from) {
             let near = book.0[usize::from(book.nearest(value))];
             assert!((near - value).abs() < 60.0, "{value} is {near}");
         }
-        assert_eq!(Codebook::of(std::iter::empty()).0, [0.0; NUMBERS]);
+        assert_eq!(Codebook::from_values(std::iter::empty()).0, [0.0; NUMBERS]);
     }
 
     #[test]

@@ -19,7 +19,7 @@ pub(super) const RANGES: Ranges = Ranges {
 struct Range([f32; 3], [f32; 3]);
 
 impl Range {
-    fn of(values: &[[f64; 3]]) -> Self {
+    fn around(values: &[[f64; 3]]) -> Self {
         let side = |pick: fn(f32, f32) -> f32, start: f32| {
             std::array::from_fn(|part| {
                 values
@@ -92,7 +92,7 @@ pub(super) fn encode(gaussians: &Gaussians) -> Vec<u8> {
             [own[0], own[1], own[2]].map(|value| f64::from(value) * SH_0 + 0.5)
         };
         let range = |of: &dyn Fn(usize) -> [f64; 3]| {
-            Range::of(&chunk.iter().map(index).map(of).collect::<Vec<_>>())
+            Range::around(&chunk.iter().map(index).map(of).collect::<Vec<_>>())
         };
         let ranges = [range(&position), range(&scale), range(&colour)];
         for end in ranges

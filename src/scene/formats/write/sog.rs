@@ -64,7 +64,7 @@ pub(super) fn encode(gaussians: &Gaussians) -> Result<Vec<u8>> {
             .to_array()
             .map(|s| f64::from(s).ln().max(LEAST_LOG))
     };
-    let scales = Codebook::of(order.iter().flat_map(|&at| scale(at)));
+    let scales = Codebook::from_values(order.iter().flat_map(|&at| scale(at)));
     let pixels = order.iter().map(|&at| {
         let [x, y, z] = scale(at).map(|value| scales.nearest(value));
         [x, y, z, 255]
@@ -83,7 +83,7 @@ pub(super) fn encode(gaussians: &Gaussians) -> Result<Vec<u8>> {
         let own = gaussians.sh_of(at as usize);
         [own[0], own[1], own[2]].map(f64::from)
     };
-    let colours = Codebook::of(order.iter().flat_map(|&at| colour(at)));
+    let colours = Codebook::from_values(order.iter().flat_map(|&at| colour(at)));
     let pixels = order.iter().map(|&at| {
         let [red, green, blue] = colour(at).map(|value| colours.nearest(value));
         [
@@ -117,7 +117,7 @@ pub(super) fn encode(gaussians: &Gaussians) -> Result<Vec<u8>> {
             .iter()
             .for_each(|&at| all.extend_from_slice(&gaussians.sh_of(at as usize)[3..]));
         let (labels, means) = sets(&all, size, SETS);
-        let values = Codebook::of(means.iter().map(|&value| value.into()));
+        let values = Codebook::from_values(means.iter().map(|&value| value.into()));
         let count = means.len() / size;
         let pixels = means.chunks_exact(3).map(|rgb| {
             let [red, green, blue] =

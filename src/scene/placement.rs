@@ -8,8 +8,8 @@ use rara_base::error::{Error, Result};
 /// then moved.
 ///
 /// A placed scene is drawn by taking the world's camera and clip into the scene
-/// ([`Camera::in_scene`], [`Clip::in_scene`], [`DepthMap::in_scene`](crate::depth::DepthMap::in_scene)). This is exact, in
-/// double precision, and touches no Gaussian. The picture is that of the placed Gaussians; spherical harmonics turn with
+/// ([`Camera::in_scene`](crate::Camera::in_scene), [`Clip::in_scene`](crate::Clip::in_scene),
+/// [`DepthMap::in_scene`](crate::DepthMap::in_scene)). This is exact, in double precision, and touches no Gaussian. The picture is that of the placed Gaussians; spherical harmonics turn with
 /// the scene. All lengths are then in the scene's units, also the depth of 0.2 below which 3DGS culls centres; that holds
 /// for a layer too, whose own units count before the camera alone.
 #[derive(Debug, Clone, Copy, PartialEq)]

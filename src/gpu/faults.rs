@@ -59,6 +59,11 @@ fn with<R>(act: impl FnOnce(&mut State) -> R) -> R {
     STATE.with_borrow_mut(act)
 }
 
+/// True on a thread that has made such an instance.
+pub(crate) fn are_here() -> bool {
+    with(|state| state.instance.is_some())
+}
+
 /// An instance under validation whose devices are as `pretence` says and fail as `set_among` asks from then on.
 pub fn instance(pretence: Option<Pretence>) -> Instance {
     let mut instance = Instance::new("rara", true, &[]).expect("the validation layer");

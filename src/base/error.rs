@@ -49,7 +49,7 @@ pub enum Error {
         call: &'static str,
         /// Its result code, a negative `VkResult`.
         code: i32,
-        /// What Vulkan says of that code.
+        /// The sentence that Vulkan has for that code.
         text: String,
     },
     /// The device has not enough memory for what was asked.

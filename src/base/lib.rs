@@ -1,4 +1,4 @@
-//! What all crates of rara stand on: errors, files, statistics, and the numbers that host and shaders share.
+//! The crate that all others of rara use: errors, files, statistics, and the numbers that host and shaders share.
 //!
 //! Applications use the crate `rara`, which shows what of this is meant for them; the rest may change with any version.
 

@@ -33,7 +33,8 @@ pub(super) struct LayerEntry {
 /// A layer that a selection makes of what a predicate takes of another.
 #[derive(Debug, Clone)]
 pub(super) struct Selection {
-    /// What it takes from: 0 for the file's own layer, or one more than the number of an earlier selection of the file.
+    /// The Gaussians that it takes from: 0 for the file's own layer, or one more than the number of an earlier selection
+    /// of the file.
     pub(super) from: usize,
     pub(super) predicate: Region<Predicate>,
     pub(super) name: String,

@@ -18,9 +18,9 @@ pub(super) struct LoadedLayer {
     pub(super) clip: Option<LayerClip>,
     /// Its place in the files, where it is a part of one.
     pub(super) numbers: Option<select::Numbers>,
-    /// What to say where it is antialiased because its training's settings say so, and its file says nothing.
+    /// The sentence to say where it is antialiased because its training's settings say so, and its file says nothing.
     pub(super) trained: Option<String>,
-    /// What is said of it before any flag says otherwise.
+    /// The state that its list gives it, before any flag changes that.
     #[cfg_attr(not(feature = "view"), allow(dead_code))]
     pub(super) listed: ListedState,
 }

@@ -1,4 +1,4 @@
-//! What splats are coloured in.
+//! The quantities that splats can be coloured in.
 
 use crate::types;
 

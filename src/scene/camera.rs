@@ -169,21 +169,11 @@ impl Camera {
         let right = (rows.x_axis - forward * rows.x_axis.dot(forward)).normalize();
         let rotation = DMat3::from_cols(right, forward.cross(right), forward).transpose();
         let eye = -(rotation.transpose() * matrix.w_axis.truncate());
-        Self {
-            width,
-            height,
-            fx,
-            fy,
-            cx,
-            cy,
-            eye,
-            rotation,
-            projection: Projection::Perspective,
-            clip_near: None,
-            clip_far: None,
-            near_cut: None,
-        }
-        .checked()
+        Self::centred(eye, rotation, fx, (width, height))
+            .fy(fy)
+            .cx(cx)
+            .cy(cy)
+            .checked()
     }
 
     fn check_size((width, height): (u32, u32)) -> Result<()> {

@@ -23,8 +23,9 @@ enum Need {
 
 use Need::{Flag, Other, Two, Value};
 
-/// What flags need that need anything, by their names in the definitions; where a command has none of those that are needed,
-/// nothing. Where a value is needed a note says so, since scripts give such flags to one value after another.
+/// The needs of the flags that have any, by the flags' names in the definitions; where a command has none of the flags
+/// that are needed, it needs nothing. Where a value is needed a note says so, since scripts give such flags to one value
+/// after another.
 const NEEDS: &[(&str, Need)] = &[
     // What is written.
     ("aov", Flag(&["output"])),

@@ -19,7 +19,7 @@ BUFFER(writeonly, 8, uvec4, block_counts)
 BUFFER(readonly, 9, uint, shortlists)
 #include "region/gaussian_side.glsl"
 
-shared uint survivor_mask[WORDS];
+shared uint splat_mask[WORDS];
 shared uint cutoff_mask[WORDS];
 shared uint visible_count;
 shared uint cutoff_count;
@@ -75,7 +75,7 @@ uint classify(uint block, uint local) {
 void main() {
     uint local = gl_LocalInvocationIndex;
     if (local < WORDS) {
-        survivor_mask[local] = 0u;
+        splat_mask[local] = 0u;
         cutoff_mask[local] = 0u;
     }
     if (local == 0u) {
@@ -93,7 +93,7 @@ void main() {
         uint bit = 1u << (local & 31u);
         // Neither sums nor unions depend on the order of the atomics.
         if (side >= SIDE_VISIBLE) {
-            atomicOr(survivor_mask[local >> 5], bit);
+            atomicOr(splat_mask[local >> 5], bit);
         }
         if (side == SIDE_VISIBLE) {
             atomicAdd(visible_count, 1u);
@@ -107,7 +107,7 @@ void main() {
     barrier();
     if (is_block) {
         if (local < WORDS) {
-            masks.at[block * 2u * WORDS + local] = survivor_mask[local];
+            masks.at[block * 2u * WORDS + local] = splat_mask[local];
             masks.at[block * 2u * WORDS + WORDS + local] = cutoff_mask[local];
         }
         if (local == 0u) {

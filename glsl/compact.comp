@@ -1,13 +1,13 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// One workgroup a block with survivors, one invocation a Gaussian, for an ordered stream compaction. A survivor's place is
+// One workgroup a block with splats, one invocation a Gaussian, for an ordered stream compaction. A splat's place is
 // its block's offset plus the set bits before its own, so the lists are in the order of the scene in every run.
 #include "layer.glsl"
 #include "masks.glsl"
-#include "survivors.glsl"
+#include "splat_gaussians.glsl"
 
 layout(local_size_x = BLOCK_SIZE) in;
-// True where survivors may be cut.
+// True where splats may be cut.
 layout(constant_id = 0) const bool CUT = false;
 
 BUFFER(readonly, 1, uint, block_list)
@@ -15,7 +15,7 @@ BUFFER(readonly, 2, FrameCounts, counts)
 BUFFER(readonly, 3, uint, block_sides)
 BUFFER(readonly, 4, uint, masks)
 BUFFER(readonly, 5, uvec2, block_offsets)
-BUFFER(writeonly, 6, uint, survivors)
+BUFFER(writeonly, 6, uint, splat_gaussians)
 BUFFER(writeonly, 7, uint, cutoffs)
 
 // Set bits of a block's mask before bit `local`.
@@ -27,10 +27,10 @@ uint rank(uint base, uint local) {
     return count;
 }
 
-void put(uint survivor, uint index, uint cut) {
-    survivors.at[survivor] = index;
+void put(uint splat_index, uint index, uint cut) {
+    splat_gaussians.at[splat_index] = index;
     if (CUT) {
-        survivors.at[cut_place(survivor)] = cut;
+        splat_gaussians.at[cut_place(splat_index)] = cut;
     }
 }
 

@@ -38,24 +38,24 @@ void main() {
         place += here;
     }
     if (run.is_last) {
-        uint survivors = place.x + place.y;
+        uint splats = place.x + place.y;
         counts.at[0].visible = place.x;
         counts.at[0].cutoff = place.y;
         counts.at[0].invisible = place.z;
-        counts.at[0].culled = FRAME.scene.gaussian_count - survivors - place.z;
+        counts.at[0].culled = FRAME.scene.gaussian_count - splats - place.z;
         counts.at[0].compact_groups = groups(place.w, 1u);
-        counts.at[0].project_groups = groups(survivors, SURVIVOR_GROUP_SIZE);
-        counts.at[0].cutoff_groups = groups(place.y, SURVIVOR_GROUP_SIZE);
-        // Even a single survivor is sorted: the passes carry it to the buffer that the draw reads.
+        counts.at[0].project_groups = groups(splats, SPLAT_GROUP_SIZE);
+        counts.at[0].cutoff_groups = groups(place.y, SPLAT_GROUP_SIZE);
+        // Even a single splat is sorted: the passes carry it to the buffer that the draw reads.
         uint sort_groups = FRAME.order.sort_runs > 0u ? FRAME.order.sort_runs / SORT_GROUP_SIZE
-            : (survivors + RADIX_PARTITION - 1u) / RADIX_PARTITION;
-        counts.at[0].sort_groups = uvec4(survivors == 0u ? 0u : sort_groups, 1u, 1u, 0u);
-        counts.at[0].draw = uvec4(4u, survivors, 0u, 0u);
-        counts.at[0].mesh_groups = groups(survivors, MESH_GROUP_SIZE);
+            : (splats + RADIX_PARTITION - 1u) / RADIX_PARTITION;
+        counts.at[0].sort_groups = uvec4(splats == 0u ? 0u : sort_groups, 1u, 1u, 0u);
+        counts.at[0].draw = uvec4(4u, splats, 0u, 0u);
+        counts.at[0].mesh_groups = groups(splats, MESH_GROUP_SIZE);
         // Where tiles are wanted, binning counts them.
         counts.at[0].pairs = 0u;
         counts.at[0].tiled = 0u;
-        counts.at[0].span_count_groups = uvec4(survivors == 0u ? 0u : FRAME.tiles.span_runs / SPAN_GROUP_SIZE, 1u, 1u, 0u);
+        counts.at[0].span_count_groups = uvec4(splats == 0u ? 0u : FRAME.tiles.span_runs / SPAN_GROUP_SIZE, 1u, 1u, 0u);
         counts.at[0].span_groups = uvec4(0u);
         counts.at[0].part_groups = uvec4(0u);
         counts.at[0].row_groups = uvec4(0u);

@@ -1,4 +1,4 @@
-// The code that the two front ends of the splat pass share: the n-th survivor from the back, and its corners.
+// The code that the two front ends of the splat pass share: the n-th splat from the back, and its corners.
 #ifndef RARA_CORNERS
 #define RARA_CORNERS
 #include "frame.glsl"
@@ -14,7 +14,7 @@ BUFFER(readonly, 5, Quad, quads)
 #include "splat_at.glsl"
 
 // Splats are drawn back to front: the blend is the ordinary `over`, so that a host can draw them onto what it has drawn.
-uint survivor_at(uint number) {
+uint splat_index_at(uint number) {
     return order.at[counts.at[0].mesh_groups.w - 1u - number];
 }
 
@@ -42,8 +42,8 @@ Quad box(Splat splat) {
     return Quad(0.5 * (low + high) - centre, vec2(half_size.x, 0.0), vec2(0.0, half_size.y));
 }
 
-Quad quad_of(uint survivor, Splat splat) {
-    return BOXES ? box(splat) : quads.at[survivor];
+Quad quad_of(uint splat_index, Splat splat) {
+    return BOXES ? box(splat) : quads.at[splat_index];
 }
 
 // Corner 0 to 3 of a strip.

@@ -10,7 +10,7 @@
 // Several planes in the affine form are such a record with the footprint's gradients and no lean. Without CUT_BEAM there is
 // one plane, which the rasteriser carries: 3 holds z at the centre, dz/dx and dz/dy, 4 its curvature, the factors of dx^2,
 // dx dy and dy^2. With CUT_COMBINED each surface has ENTRY_VECTORS vec4s: normal and distance; the bend's xx, yy, zz and the
-// joins of SurfaceData; xy, xz, yz. With CUT_CURVE, in the coordinates of curve.glsl, 0 holds z at the centre and its slopes, 1 the factors
+// operators of SurfaceData; xy, xz, yz. With CUT_CURVE, in the coordinates of curve.glsl, 0 holds z at the centre and its slopes, 1 the factors
 // of u^2, u v, v^2 and v^4, 2 those of u^3, u^2 v, u v^2 and v^3, 3 those of u^4, u^3 v, u^2 v^2 and u v^3.
 #ifndef RARA_CUT
 #define RARA_CUT
@@ -25,7 +25,7 @@ const uint CUT_CURVE = 4u;
 // The splat is cut by a union: the record holds the planes' complements, and what it keeps is the rest of what these keep
 // together. A plane alone is a union only where it is weighed as several are: in mode `rara`, and with CUT_FRONT.
 const uint CUT_UNION = 8u;
-// The surfaces may bend, and combine by their joins.
+// The surfaces may bend, and combine by their operators.
 const uint CUT_COMBINED = 16u;
 const uint CUT_COUNT_SHIFT = 8u;
 
@@ -36,7 +36,7 @@ const uint CUT_COUNT_SHIFT = 8u;
 const float Z_RANGE = 1e30;
 const float Z_WHOLE = 2e30;
 const float Z_RECORD = -2e30;
-// In a reclipped frame the survivors are all that is in view; this z says that a splat is clipped away.
+// In a reclipped frame the splats are all that is in view; this z says that a splat is clipped away.
 const float Z_CUT_AWAY = 4e30;
 
 // True when a plane keeps the far part of a line of sight, by its normal's component along the line. Where that is zero

@@ -7,7 +7,7 @@
 #include "curve.glsl"
 #include "region/carried_bend.glsl"
 
-layout(local_size_x = SURVIVOR_GROUP_SIZE) in;
+layout(local_size_x = SPLAT_GROUP_SIZE) in;
 
 BUFFER(readonly, 2, Gaussian, gaussians)
 BUFFER(readonly, 3, uint, cutoffs)
@@ -100,9 +100,9 @@ bool are_planes(uint base, uint entries, out bool is_union) {
         uint at = base + CUT_HEADER + ENTRY_VECTORS * i;
         vec4 diagonal = cut_records.at[at + 1u];
         bends = bends || diagonal.xyz != vec3(0.0) || cut_records.at[at + 2u].xyz != vec3(0.0);
-        uint joins = to_uint(diagonal.w);
-        uint count = join_count(joins);
-        uint ors = uint(bitCount(joins >> JOIN_SHIFT));
+        uint operators = to_uint(diagonal.w);
+        uint count = operator_count(operators);
+        uint ors = uint(bitCount(operators >> OPERATOR_SHIFT));
         is_union = is_union || ors > 0u;
         has_and = has_and || ors < count;
     }
@@ -123,7 +123,7 @@ CurveSource source_of_footprint(Footprint f) {
 }
 
 void main() {
-    uint cut = LINEAR_GROUP * SURVIVOR_GROUP_SIZE + gl_LocalInvocationIndex;
+    uint cut = LINEAR_GROUP * SPLAT_GROUP_SIZE + gl_LocalInvocationIndex;
     if (cut >= counts.at[0].cutoff) {
         return;
     }

@@ -1,13 +1,13 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// One invocation a survivor finds how deep it is in each pixel, and how the clip changes that.
+// One invocation a splat finds how deep it is in each pixel, and how the clip changes that.
 #include "band.glsl"
 #include "cut.glsl"
 
-layout(local_size_x = SURVIVOR_GROUP_SIZE) in;
+layout(local_size_x = SPLAT_GROUP_SIZE) in;
 
 BUFFER(readonly, 2, Gaussian, gaussians)
-BUFFER(readonly, 3, uint, survivors)
+BUFFER(readonly, 3, uint, splat_gaussians)
 BUFFER(readonly, 4, FrameCounts, counts)
 BUFFER(writeonly, 5, SplatDepth, depths)
 BUFFER(readonly, 6, uint, shortlists)
@@ -26,11 +26,11 @@ float covariance(Footprint f, vec3 c, vec3 a, vec3 b) {
 }
 
 void main() {
-    uint survivor = LINEAR_GROUP * SURVIVOR_GROUP_SIZE + gl_LocalInvocationIndex;
-    if (survivor >= counts.at[0].visible + counts.at[0].cutoff) {
+    uint splat_index = LINEAR_GROUP * SPLAT_GROUP_SIZE + gl_LocalInvocationIndex;
+    if (splat_index >= counts.at[0].visible + counts.at[0].cutoff) {
         return;
     }
-    uint index = survivors.at[survivor];
+    uint index = splat_gaussians.at[splat_index];
     enter_layer_of_block(index / BLOCK_SIZE);
     Gaussian gaussian = gaussians.at[index];
     Footprint f = footprint(gaussian);
@@ -75,5 +75,5 @@ void main() {
             depth.near = bound;
         }
     }
-    depths.at[survivor] = depth;
+    depths.at[splat_index] = depth;
 }

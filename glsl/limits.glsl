@@ -37,8 +37,8 @@ const uint RECLIP_WORDS = 32u;
 const float OPACITY_SPANNING = 0.006;
 // Standard deviation on the screen up to which single precision surely finds a splat's conic, px.
 const float DRAWABLE_DEVIATION = 1e6;
-// Survivors a workgroup of project and cutoff handles.
-const uint SURVIVOR_GROUP_SIZE = 64u;
+// Splats a workgroup of project and cutoff handles.
+const uint SPLAT_GROUP_SIZE = 64u;
 // Splats a mesh workgroup emits: 4 vertices and 2 triangles each, half of the least that Vulkan guarantees.
 const uint MESH_GROUP_SIZE = 32u;
 // Columns of pixels of a tile.
@@ -69,14 +69,14 @@ const uint RADIX_GROUP_SIZE = 256u;
 // Consecutive keys of such a workgroup: its partition.
 const uint RADIX_PARTITION = 4096u;
 // The most groups of splats of one depth that are more than such a workgroup sorts.
-const uint MOST_CROWDS = 1020u;
+const uint MOST_LARGE_TIES = 1020u;
 // The most parts into which the scene's numbers are divided to sort such a group.
 const uint MOST_STRETCHES = 256u;
 // The fewest partitions of such a part.
 const uint LEAST_STRETCH = 4u;
 // Counts of an invocation in a turn of that sort's scans.
 const uint RADIX_SCAN_COUNTS = 8u;
-// Tiles across a macro-tile, in which kernels for GPUs collect splats before they list those of each tile. A picture
+// Tiles across a macro-tile, in which pipelines for GPUs collect splats before they list those of each tile. A picture
 // of 1920x1080 then has 255 macro-tiles, one fewer than a digit of the sort has values.
 const uint MACRO_COLUMNS = 16u;
 // Tiles down a macro-tile.

@@ -1,4 +1,4 @@
-// Macro-tiles of MACRO_COLUMNS x MACRO_ROWS tiles, in which kernels for GPUs collect the splats before they list those of each
+// Macro-tiles of MACRO_COLUMNS x MACRO_ROWS tiles, in which pipelines for GPUs collect the splats before they list those of each
 // tile. A splat has a pair with each macro-tile of a rectangle around its tiles, and may touch none of the macro-tile's.
 #ifndef RARA_MACRO_TILES
 #define RARA_MACRO_TILES

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// One invocation a survivor computes its conic, quad and colour for the rasteriser, and the key that orders it.
+// One invocation a splat computes its conic, quad and colour for the rasteriser, and the key that orders it.
 struct Params {
     uint first_layer; // COLOURS_LAYERS: the layer that is red; the next one is green, and the one after it blue
 };
@@ -10,7 +10,7 @@ struct Params {
 #include "spherical_harmonics.glsl"
 #include "rects.glsl"
 
-layout(local_size_x = SURVIVOR_GROUP_SIZE) in;
+layout(local_size_x = SPLAT_GROUP_SIZE) in;
 layout(constant_id = 0) const bool CUT = false;
 // True when tiles are wanted.
 layout(constant_id = 2) const bool TILES = false;
@@ -22,7 +22,7 @@ layout(constant_id = 6) const uint COLOURS = COLOURS_SCENE; // COLOURS_*
 
 BUFFER(readonly, 1, Gaussian, gaussians)
 BUFFER(readonly, 2, uint, sh)
-BUFFER(readonly, 3, uint, survivors)
+BUFFER(readonly, 3, uint, splat_gaussians)
 BUFFER(readonly, 4, FrameCounts, counts)
 BUFFER(writeonly, 5, vec4, splats)
 BUFFER(writeonly, 6, Quad, quads)
@@ -33,7 +33,7 @@ BUFFER(writeonly, 9, uvec4, tile_masks)
 
 #include "splats.glsl"
 #include "carried.glsl"
-#include "survivors.glsl"
+#include "splat_gaussians.glsl"
 
 vec3 colour(uint index, vec3 direction) {
     float basis[MAX_SH_COEFFICIENTS];
@@ -74,7 +74,7 @@ vec3 normal(Gaussian gaussian, vec3 sight) {
     return normalize(to_view(dot(axis, sight) > 0.0 ? -axis : axis));
 }
 
-// What a splat is coloured in that is seen in a direction.
+// The colour that a splat is drawn with, seen in a direction.
 vec3 shown(uint index, Gaussian gaussian, vec3 direction) {
     vec3 sight = normalize(direction / largest(direction));
     if (COLOURS == COLOURS_NUMBERS) {
@@ -90,11 +90,11 @@ vec3 shown(uint index, Gaussian gaussian, vec3 direction) {
 }
 
 void main() {
-    uint survivor = LINEAR_GROUP * SURVIVOR_GROUP_SIZE + gl_LocalInvocationIndex;
-    if (survivor >= counts.at[0].visible + counts.at[0].cutoff) {
+    uint splat_index = LINEAR_GROUP * SPLAT_GROUP_SIZE + gl_LocalInvocationIndex;
+    if (splat_index >= counts.at[0].visible + counts.at[0].cutoff) {
         return;
     }
-    uint index = survivors.at[survivor];
+    uint index = splat_gaussians.at[splat_index];
     enter_layer_of_block(index / BLOCK_SIZE);
     Gaussian gaussian = gaussians.at[index];
     Footprint f = footprint(gaussian);
@@ -103,27 +103,27 @@ void main() {
 
     Splat splat;
     vec3 conic = conic_of(f);
-    uint cut = CUT ? survivors.at[cut_place(survivor)] : NOT_CUT;
+    uint cut = CUT ? splat_gaussians.at[cut_place(splat_index)] : NOT_CUT;
     Carried weight = CUT ? carried_weight(cut) : whole_weight();
     Quad quad = quad_around(f, extent, weight);
     if (QUADS) {
-        quads.at[survivor] = quad;
+        quads.at[splat_index] = quad;
     }
     splat.centre_conic = vec4(f.screen_centre, conic.xy);
     splat.conic_cut = vec4(conic.z, opacity, weight.linear.xy);
     vec3 direction = is_orthographic() ? LAYER_VIEW.rotation_z.xyz : f.relative;
     splat.colour_cut = vec4(shown(index, gaussian, direction), weight.linear.z);
     splat.curvature_depth = vec4(weight.curvature, f.view_centre.z);
-    SPLAT_CENTRE(survivor) = splat.centre_conic;
-    SPLAT_CONIC(survivor) = splat.conic_cut;
-    SPLAT_COLOUR(survivor) = splat.colour_cut;
+    SPLAT_CENTRE(splat_index) = splat.centre_conic;
+    SPLAT_CONIC(splat_index) = splat.conic_cut;
+    SPLAT_COLOUR(splat_index) = splat.colour_cut;
     if (!splats_lie_apart()) {
-        SPLAT_CURVATURE(survivor) = splat.curvature_depth;
+        SPLAT_CURVATURE(splat_index) = splat.curvature_depth;
     } else {
         if (CUT && abs(weight.linear.x) < Z_RANGE) {
-            SPLAT_CURVATURE(survivor) = splat.curvature_depth;
+            SPLAT_CURVATURE(splat_index) = splat.curvature_depth;
         }
-        SPLAT_DEPTH(survivor) = splat.curvature_depth.w;
+        SPLAT_DEPTH(splat_index) = splat.curvature_depth.w;
     }
     if (TILES) {
         Outline o = outline(splat, quad);
@@ -133,14 +133,14 @@ void main() {
         uvec4 tiles = tile_mask(o);
         uint word = rect_word(tiles);
         if (RECTS) {
-            RECT_WORD(tile_masks, survivor) = word;
+            RECT_WORD(tile_masks, splat_index) = word;
         }
         if (!RECTS || needs_mask(word)) {
-            tile_masks.at[survivor] = tiles;
+            tile_masks.at[splat_index] = tiles;
         }
     }
     // Positive floats order like their bits. Counted from the nearest depth that the scene's bounds allow they need
     // fewer bits, and the sort fewer passes; dropping low bits never reverses an order.
     uint depth = max(floatBitsToUint(f.view_centre.z), FRAME.order.key_near) - FRAME.order.key_near;
-    depth_keys.at[survivor] = min(depth, FRAME.order.key_span) >> FRAME.order.key_shift;
+    depth_keys.at[splat_index] = min(depth, FRAME.order.key_span) >> FRAME.order.key_shift;
 }

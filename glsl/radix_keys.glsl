@@ -1,4 +1,4 @@
-// The keys that the kernels of the sort for GPUs sort: those of the survivors, or the macro-tiles of the pairs of macro-tile
+// The keys that the pipelines of the sort for GPUs sort: those of the splats, or the macro-tiles of the pairs of macro-tile
 // and splat (src/passes/bin/macro_tiles.rs), of which no pass is skipped, and above whose bits the keys hold more.
 #ifndef RARA_RADIX_KEYS
 #define RARA_RADIX_KEYS

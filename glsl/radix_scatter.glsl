@@ -22,7 +22,7 @@ BUFFER(readonly, 7, uint, depth_keys)
 // Where the pairs of each macro-tile begin, and where all end, which one pass finds on its way.
 BUFFER(writeonly, 8, uint, macro_begins)
 
-// The first pass of the survivors' keys carries them from where they were found.
+// The first pass of the splats' keys carries them from where they were found.
 uint key_at(bool is_first, uint i) {
     return is_first ? depth_keys.at[i] : keys.at[i];
 }
@@ -35,7 +35,7 @@ void main() {
     uint p = gl_WorkGroupID.x;
     uint number = KEY_DIGIT;
     uint base = KEY_BASE;
-    bool is_first = !PAIRS && number == 0u; // the survivors are in their own order
+    bool is_first = !PAIRS && number == 0u; // the splats are in their own order
     uvec2 bounds = partition_bounds(p, KEY_COUNT);
     uint total;
     uint of_digit = histogram.at[TOTAL_PLACE(local)];

@@ -2,9 +2,9 @@
 #extension GL_GOOGLE_include_directive : require
 // After the sort for GPUs, splats of one depth are in the order of the blocks; this puts them into that of their numbers. An
 // invocation orders a few alone. Where more have one depth, the workgroup of the first ranks them, or sorts them by the digits
-// in which their numbers differ. Of crowds, each workgroup sends its own to their numbers (crowds.glsl).
+// in which their numbers differ. Of large ties, each workgroup sends its own to their numbers (large_ties.glsl).
 #include "radix_carry.glsl"
-#include "crowds.glsl"
+#include "large_ties.glsl"
 
 layout(local_size_x = RADIX_GROUP_SIZE) in;
 
@@ -12,12 +12,12 @@ BUFFER(readonly, 1, FrameCounts, counts)
 BUFFER(readonly, 2, uint, keys)
 BUFFER(coherent, 3, uint, order)
 BUFFER(coherent, 4, uint, scratch)
-BUFFER(readonly, 5, uint, survivors)
+BUFFER(readonly, 5, uint, splat_gaussians)
 BUFFER(readonly, 6, Gaussian, gaussians)
-// The numbers of those that are sorted by digits, by survivor.
+// The numbers of those that are sorted by digits, by splat.
 BUFFER(coherent, 7, uint, numbers)
-BUFFER(, 8, uint, crowds)
-BUFFER(writeonly, 9, uint, crowd_members)
+BUFFER(, 8, uint, large_ties)
+BUFFER(writeonly, 9, uint, tie_members)
 #define STEPS RADIX_KEYS
 #include "ties.glsl"
 
@@ -30,7 +30,7 @@ const uint AT_ONCE = 4u;
 shared uint begins[RADIX_PARTITION / FEW];
 shared uint begin_count;
 
-const uvec2 NO_CROWD = uvec2(~0u, 0u);
+const uvec2 NO_LARGE_TIE = uvec2(~0u, 0u);
 
 // The places [first, last) of the keys that equal the one at a place.
 uvec2 equal_keys(uint place) {
@@ -52,24 +52,24 @@ uvec2 equal_keys(uint place) {
     return uvec2(below.x, above.x);
 }
 
-// The crowd at a place. It holds half a partition before the place or behind it, which rules out nearly all.
-uvec2 crowd_at(uint place) {
+// The tie at a place. It holds half a partition before the place or behind it, which rules out nearly all.
+uvec2 tie_at(uint place) {
     const uint HALF_PARTITION = RADIX_PARTITION / 2u;
     uint key = keys.at[place];
     bool before = place >= HALF_PARTITION && keys.at[max(place, HALF_PARTITION) - HALF_PARTITION] == key;
     bool behind = place + HALF_PARTITION < KEY_COUNT && keys.at[min(place + HALF_PARTITION, KEY_COUNT - 1u)] == key;
     if (!before && !behind) {
-        return NO_CROWD;
+        return NO_LARGE_TIE;
     }
     uvec2 places = equal_keys(place);
-    return places.y - places.x > crowd_size(KEY_COUNT) ? places : NO_CROWD;
+    return places.y - places.x > large_tie_size(KEY_COUNT) ? places : NO_LARGE_TIE;
 }
 
-// Sends those of a crowd that are in this partition to their numbers.
-void send(uvec2 crowd, uvec2 bounds) {
+// Sends those of a tie that are in this partition to their numbers.
+void send(uvec2 tie, uvec2 bounds) {
     uint local = gl_LocalInvocationIndex;
-    uint crowd_number = crowd.x / crowd_size(KEY_COUNT);
-    uvec2 own = uvec2(max(crowd.x, bounds.x), min(crowd.y, bounds.y));
+    uint tie_number = tie.x / large_tie_size(KEY_COUNT);
+    uvec2 own = uvec2(max(tie.x, bounds.x), min(tie.y, bounds.y));
     uint members[RADIX_KEYS];
     uint its_numbers[RADIX_KEYS];
     for (uint k = 0u; k < RADIX_KEYS; k++) {
@@ -79,16 +79,16 @@ void send(uvec2 crowd, uvec2 bounds) {
     for (uint k = 0u; k < RADIX_KEYS; k++) {
         if (own.x + k * RADIX_GROUP_SIZE + local < own.y) {
             uint its_number = its_numbers[k];
-            crowd_members.at[its_number] = members[k];
-            crowd_members.at[crowd_place(its_number)] = crowd_number;
+            tie_members.at[its_number] = members[k];
+            tie_members.at[tie_place(its_number)] = tie_number;
             // Neither bits nor sums depend on the order.
-            atomicOr(crowds.at[crowd_bits_place(its_number)], 1u << its_number % 32u);
-            atomicAdd(crowds.at[crowd_count_place(its_number / stretch_size(), crowd_number)], 1u);
+            atomicOr(large_ties.at[tie_bits_place(its_number)], 1u << its_number % 32u);
+            atomicAdd(large_ties.at[tie_count_place(its_number / stretch_size(), tie_number)], 1u);
         }
     }
-    if (local == 0u && crowd.x >= bounds.x) {
-        crowds.at[crowd_begin_place(crowd_number)] = crowd.x;
-        crowds.at[ANY_CROWD] = 1u; // whoever writes it
+    if (local == 0u && tie.x >= bounds.x) {
+        large_ties.at[tie_begin_place(tie_number)] = tie.x;
+        large_ties.at[ANY_LARGE_TIE] = 1u; // whoever writes it
     }
 }
 
@@ -192,8 +192,8 @@ void sort_by_digit(bool second, uint begin, uint end, uint digit_number) {
 void rank_together(uint begin, uint end) {
     uint local = gl_LocalInvocationIndex;
     uint count = end - begin;
-    uint survivor = local < count ? order.at[begin + local] : 0u;
-    uint its_number = local < count ? number(survivor) : 0u;
+    uint splat_index = local < count ? order.at[begin + local] : 0u;
+    uint its_number = local < count ? number(splat_index) : 0u;
     items[local] = its_number;
     barrier();
     uint rank = 0u;
@@ -201,7 +201,7 @@ void rank_together(uint begin, uint end) {
         rank += items[other] < its_number ? 1u : 0u;
     }
     if (local < count) {
-        order.at[begin + rank] = survivor;
+        order.at[begin + rank] = splat_index;
     }
     publish();
 }
@@ -227,14 +227,14 @@ void main() {
         begin_count = 0u;
     }
     barrier();
-    // A crowd holds more than a partition: it holds the first or the last of those that it is in.
-    uvec2 crowds_here[2];
+    // A tie holds more than a partition: it holds the first or the last of those that it is in.
+    uvec2 ties_here[2];
     for (uint end = 0u; end < 2u; end++) {
-        crowds_here[end] = crowd_at(end == 0u ? bounds.x : bounds.y - 1u);
+        ties_here[end] = tie_at(end == 0u ? bounds.x : bounds.y - 1u);
     }
     for (uint firsts = find_firsts(bounds, count); firsts != 0u; firsts &= firsts - 1u) {
         uint begin = bounds.x + uint(findLSB(firsts)) * RADIX_GROUP_SIZE + gl_LocalInvocationIndex;
-        if (begin == crowds_here[1].x) {
+        if (begin == ties_here[1].x) {
             continue;
         }
         uint end = end_of_few(begin);
@@ -254,9 +254,9 @@ void main() {
         }
     }
     for (uint end = 0u; end < 2u; end++) {
-        uvec2 crowd = crowds_here[end];
-        if (crowd.y > 0u && (end == 0u || crowd.x != crowds_here[0].x)) {
-            send(crowd, bounds);
+        uvec2 tie = ties_here[end];
+        if (tie.y > 0u && (end == 0u || tie.x != ties_here[0].x)) {
+            send(tie, bounds);
         }
     }
 }

@@ -1,5 +1,5 @@
 // A reclipped frame keeps RECLIP_WORDS words of each block: which of its Gaussians in view change, are visible or are cut,
-// their totals, their places in the lists, and its side. In a reclipped frame the camera stands still; the survivors
+// their totals, their places in the lists, and its side. In a reclipped frame the camera stands still; the splats
 // are all Gaussians in view, clipped away or not.
 #ifndef RARA_RECLIP
 #define RARA_RECLIP

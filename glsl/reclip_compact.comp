@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// One workgroup a revisited block, one invocation a Gaussian, writes the lists of the survivors that change and of the
+// One workgroup a revisited block, one invocation a Gaussian, writes the lists of the splats that change and of the
 // Gaussians that are cut, in the order of the scene.
 #include "reclip.glsl"
 
@@ -29,18 +29,18 @@ void main() {
     }
     uint view_base = block * 2u * WORDS;
     bool is_whole = block_sides.at[block] == SIDE_VISIBLE;
-    uint survivor = block_offsets.at[block].x + (is_whole ? local : 0u);
+    uint splat_index = block_offsets.at[block].x + (is_whole ? local : 0u);
     uint place = reclips.at[base + RECLIP_PLACES];
     uint cut = reclips.at[base + RECLIP_PLACES + 1u];
     for (uint word = 0u; word <= local >> 5; word++) {
         place += bits_before(reclips.at[base + RECLIP_CHANGED + word], word, local);
         cut += bits_before(reclips.at[base + RECLIP_CUT + word], word, local);
-        survivor += is_whole ? 0u : bits_before(masks.at[view_base + word], word, local);
+        splat_index += is_whole ? 0u : bits_before(masks.at[view_base + word], word, local);
     }
     bool is_cut = (reclips.at[base + RECLIP_CUT + (local >> 5)] & bit) != 0u;
     bool is_visible = (reclips.at[base + RECLIP_VISIBLE + (local >> 5)] & bit) != 0u;
     if (is_cut) {
         cutoffs.at[cut] = block * BLOCK_SIZE + local;
     }
-    recuts.at[place] = uvec2(survivor, is_cut ? cut : is_visible ? NOT_CUT : CUT_AWAY);
+    recuts.at[place] = uvec2(splat_index, is_cut ? cut : is_visible ? NOT_CUT : CUT_AWAY);
 }

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Sums the blocks' totals to the frame's counts, finds each block's place in the lists of what changes and of what is cut, and
-// writes their indirect commands. The survivors and their order stay.
+// writes their indirect commands. The splats and their order stay.
 #include "block_runs.glsl"
 #include "reclip.glsl"
 #include "groups.glsl"
@@ -31,7 +31,7 @@ void main() {
         counts.at[0].visible = place.x;
         counts.at[0].cutoff = place.y;
         counts.at[0].invisible = place.z;
-        counts.at[0].cutoff_groups = groups(place.y, SURVIVOR_GROUP_SIZE);
-        counts.at[0].recut_groups = groups(place.w, SURVIVOR_GROUP_SIZE);
+        counts.at[0].cutoff_groups = groups(place.y, SPLAT_GROUP_SIZE);
+        counts.at[0].recut_groups = groups(place.w, SPLAT_GROUP_SIZE);
     }
 }

@@ -1,4 +1,4 @@
-// Rectangles of tiles. Kernels for GPUs know most splats' tiles by a word: the rectangle around them, marked where the splat
+// Rectangles of tiles. Pipelines for GPUs know most splats' tiles by a word: the rectangle around them, marked where the splat
 // does not touch all of it. Only then is the mask of its tiles written, or read. The words stand behind the masks, four in the
 // place of one.
 #ifndef RARA_RECTS

@@ -1,12 +1,12 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// One invocation a survivor that a moved clip changes computes what of it depends on the clip, and marks the tiles to draw
-// again. The survivor's centre, colour, depth and tiles stay.
+// One invocation a splat that a moved clip changes computes what of it depends on the clip, and marks the tiles to draw
+// again. The splat's centre, colour, depth and tiles stay.
 #include "footprint.glsl"
 #include "quad.glsl"
 #include "rects.glsl"
 
-layout(local_size_x = SURVIVOR_GROUP_SIZE) in;
+layout(local_size_x = SPLAT_GROUP_SIZE) in;
 // True when tiles are wanted.
 layout(constant_id = 0) const bool TILES = false;
 // True when quads are drawn.
@@ -15,7 +15,7 @@ layout(constant_id = 1) const bool QUADS = false;
 layout(constant_id = 2) const bool RECTS = false;
 
 BUFFER(readonly, 1, Gaussian, gaussians)
-BUFFER(readonly, 2, uint, survivors)
+BUFFER(readonly, 2, uint, splat_gaussians)
 BUFFER(readonly, 3, FrameCounts, counts)
 BUFFER(readonly, 4, uvec2, recuts)
 BUFFER(readonly, 5, vec4, cut_records)
@@ -27,8 +27,8 @@ BUFFER(writeonly, 9, Quad, quads)
 #include "carried.glsl"
 
 // All that find a tile changed write the same value. The tiles are the whole splat's, as in the lists.
-void mark(uint survivor) {
-    uint word = RECTS ? RECT_WORD(tile_masks, survivor) : RECT_LARGE;
+void mark(uint splat_index) {
+    uint word = RECTS ? RECT_WORD(tile_masks, splat_index) : RECT_LARGE;
     if (!needs_mask(word)) {
         Rect rect = word == RECT_NONE ? NO_RECT : rect_of_word(word);
         for (uint row = 0u; row < rect.size.y; row++) {
@@ -39,7 +39,7 @@ void mark(uint survivor) {
         }
         return;
     }
-    uvec4 tiles = tile_masks.at[survivor];
+    uvec4 tiles = tile_masks.at[splat_index];
     for (uvec2 mask = tiles.y == 0u ? tiles.zw : uvec2(0u); (mask.x | mask.y) != 0u;) {
         Span span = next_span(tiles.x, mask);
         uvec2 columns = span.columns + span.row * FRAME.tiles.tile_columns;
@@ -48,7 +48,7 @@ void mark(uint survivor) {
         }
     }
     if (tiles.y != 0u) {
-        Splat splat = splat_at(survivor);
+        Splat splat = splat_at(splat_index);
         splat.conic_cut.z = Z_WHOLE;
         Outline o = bounded_outline(splat, tiles.zw);
         for (uint row = o.rows.x; row < o.rows.y; row++) {
@@ -61,13 +61,13 @@ void mark(uint survivor) {
 }
 
 void main() {
-    uint change = LINEAR_GROUP * SURVIVOR_GROUP_SIZE + gl_LocalInvocationIndex;
+    uint change = LINEAR_GROUP * SPLAT_GROUP_SIZE + gl_LocalInvocationIndex;
     if (change >= counts.at[0].recut_groups.w) {
         return;
     }
-    uint survivor = recuts.at[change].x;
+    uint splat_index = recuts.at[change].x;
     uint cut = recuts.at[change].y;
-    uint index = survivors.at[survivor];
+    uint index = splat_gaussians.at[splat_index];
     enter_layer_of_block(index / BLOCK_SIZE);
     Gaussian gaussian = gaussians.at[index];
     Footprint f = footprint(gaussian);
@@ -76,7 +76,7 @@ void main() {
         weight = carried_weight(cut);
     }
     if (TILES) {
-        mark(survivor);
+        mark(splat_index);
     }
     Quad quad = Quad(vec2(0.0), vec2(0.0), vec2(0.0));
     if (cut == CUT_AWAY) {
@@ -85,10 +85,10 @@ void main() {
     } else if (QUADS) {
         quad = quad_around(f, opacity_extent(opacity_on_screen(f, gaussian)), weight);
     }
-    SPLAT_CONIC(survivor).zw = weight.linear.xy;
-    SPLAT_COLOUR(survivor).w = weight.linear.z;
-    SPLAT_CURVATURE(survivor).xyz = weight.curvature;
+    SPLAT_CONIC(splat_index).zw = weight.linear.xy;
+    SPLAT_COLOUR(splat_index).w = weight.linear.z;
+    SPLAT_CURVATURE(splat_index).xyz = weight.curvature;
     if (QUADS) {
-        quads.at[survivor] = quad;
+        quads.at[splat_index] = quad;
     }
 }

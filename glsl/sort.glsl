@@ -1,4 +1,4 @@
-// The parts that all kernels of the sort share: a stable radix sort from the least significant digit on.
+// The parts that all pipelines of the sort share: a stable radix sort from the least significant digit on.
 //
 // The first count finds the least and the greatest key. Counted from the least, the keys may differ in fewer digits than
 // the scene's bounds allow. The first passes are then skipped, so that the sorted keys end up in the same buffer. Whichever

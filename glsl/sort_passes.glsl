@@ -1,4 +1,4 @@
-// The passes of a sort that are skipped. Included by the scan of each kernel set, after the size of its workgroup and the
+// The passes of a sort that are skipped. Included by the scan of each pipeline set, after the size of its workgroup and the
 // buffers `counts` and `histogram` are declared; RANGES says how many runs or partitions have noted their least and their
 // greatest key, and RANGE_PLACE where.
 #ifndef RARA_SORT_PASSES

@@ -21,7 +21,7 @@ void main() {
     uint run = gl_GlobalInvocationID.x;
     uint number = KEY_DIGIT;
     uint base = KEY_BASE;
-    bool is_first = number == 0u; // the survivors are in their own order
+    bool is_first = number == 0u; // the splats are in their own order
     uvec2 bounds = run_bounds(run, FRAME.order.sort_runs, KEY_COUNT);
     for (uint i = bounds.x; i < bounds.y; i++) {
         uint key = is_first ? depth_keys.at[i] : keys.at[i];

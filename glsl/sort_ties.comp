@@ -12,8 +12,8 @@ BUFFER(readonly, 1, FrameCounts, counts)
 BUFFER(readonly, 2, uint, keys)
 BUFFER(coherent, 3, uint, order)
 BUFFER(coherent, 4, uint, scratch)
-BUFFER(readonly, 5, uint, survivors)
-// The numbers of those that are sorted by digits, by survivor.
+BUFFER(readonly, 5, uint, splat_gaussians)
+// The numbers of those that are sorted by digits, by splat.
 BUFFER(coherent, 6, uint, numbers)
 // The sort's, of which each invocation uses its own run's part.
 BUFFER(coherent, 7, uint, histogram)
@@ -63,9 +63,9 @@ void merge_together(uint begin, uint end) {
             uint piece = (i - begin) / width;
             uint own = begin + piece * width;
             uint other = min(begin + (piece ^ 1u) * width, end);
-            uint survivor = at(second, i);
-            uint rank = rank_among(second, other, min(other + width, end), number(survivor));
-            put(!second, min(own, other) + (i - own) + rank, survivor);
+            uint splat_index = at(second, i);
+            uint rank = rank_among(second, other, min(other + width, end), number(splat_index));
+            put(!second, min(own, other) + (i - own) + rank, splat_index);
         }
         second = !second;
         publish();
@@ -110,11 +110,11 @@ void sort_by_digit(bool second, uint begin, uint end, uint digit_number) {
     }
     publish();
     for (uint i = run.x; i < run.y; i++) {
-        uint survivor = at(second, i);
-        uint slot = slots + digit(numbers.at[survivor], digit_number);
+        uint splat_index = at(second, i);
+        uint slot = slots + digit(numbers.at[splat_index], digit_number);
         uint place = histogram.at[slot];
         histogram.at[slot] = place + 1u;
-        put(!second, place, survivor);
+        put(!second, place, splat_index);
     }
     publish();
 }

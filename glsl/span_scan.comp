@@ -19,7 +19,7 @@ shared uint totals[ROWS];
 
 void main() {
     uint local = gl_LocalInvocationIndex;
-    // Without survivors nothing was counted, and the counts are another frame's.
+    // Without splats nothing was counted, and the counts are another frame's.
     uint runs = counts.at[0].mesh_groups.w == 0u ? 0u : FRAME.tiles.span_runs;
     uint own_pairs = 0u;
     for (uint run = local; run < runs; run += ROWS) {

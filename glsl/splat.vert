@@ -10,9 +10,9 @@ layout(location = 2) flat out vec4 colour_cut;
 layout(location = 3) flat out vec3 curvature;
 
 void main() {
-    uint survivor = survivor_at(gl_InstanceIndex);
-    Splat splat = splat_at(survivor);
-    gl_Position = corner(splat, quad_of(survivor, splat), gl_VertexIndex);
+    uint splat_index = splat_index_at(gl_InstanceIndex);
+    Splat splat = splat_at(splat_index);
+    gl_Position = corner(splat, quad_of(splat_index, splat), gl_VertexIndex);
     centre_conic = fragment_centre(splat);
     conic_cut = splat.conic_cut;
     colour_cut = splat.colour_cut;

@@ -15,10 +15,10 @@ layout(location = 4) flat out vec4 far;
 layout(location = 5) flat out vec4 near;
 
 void main() {
-    uint survivor = survivor_at(gl_InstanceIndex);
-    Splat splat = splat_at(survivor);
-    SplatDepth depth = depths.at[survivor];
-    gl_Position = corner(splat, quads.at[survivor], gl_VertexIndex);
+    uint splat_index = splat_index_at(gl_InstanceIndex);
+    Splat splat = splat_at(splat_index);
+    SplatDepth depth = depths.at[splat_index];
+    gl_Position = corner(splat, quads.at[splat_index], gl_VertexIndex);
     centre_conic = fragment_centre(splat);
     conic_cut = splat.conic_cut;
     slope_curvature = vec4(splat.colour_cut.w, splat.curvature_depth.xyz);

@@ -23,9 +23,9 @@ void main() {
     if (local >= here) {
         return;
     }
-    uint survivor = survivor_at(begin + local);
-    Splat splat = splat_at(survivor);
-    Quad quad = quad_of(survivor, splat);
+    uint splat_index = splat_index_at(begin + local);
+    Splat splat = splat_at(splat_index);
+    Quad quad = quad_of(splat_index, splat);
     for (uint i = 0u; i < 4u; i++) {
         gl_MeshVerticesEXT[4u * local + i].gl_Position = corner(splat, quad, i);
     }

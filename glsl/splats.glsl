@@ -1,5 +1,5 @@
 // How splats lie in the buffer `splats`, which whoever includes this declares as vec4s. For CPU drivers each is 64 bytes, a cache
-// line. Kernels for GPUs have the 48 bytes of all splats that every tile reads first, then the curvatures, of which only those
+// line. Pipelines for GPUs have the 48 bytes of all splats that every tile reads first, then the curvatures, of which only those
 // that are carried are written and read, and then the depths, four in the place of one.
 #ifndef RARA_SPLATS
 #define RARA_SPLATS

@@ -1,23 +1,23 @@
 // Puts splats of one depth into the order of their numbers. Included after the size of the workgroup and the buffers `order`,
-// `scratch`, `survivors`, `gaussians` and `numbers` are declared.
+// `scratch`, `splat_gaussians`, `gaussians` and `numbers` are declared.
 #ifndef RARA_TIES
 #define RARA_TIES
 #include "frame.glsl"
 
-// A survivor's number in the scene.
-uint number(uint survivor) {
-    return floatBitsToUint(gaussians.at[survivors.at[survivor]].scale.w);
+// A splat's number in the scene.
+uint number(uint splat_index) {
+    return floatBitsToUint(gaussians.at[splat_gaussians.at[splat_index]].scale.w);
 }
 
 uint at(bool second, uint i) {
     return second ? scratch.at[i] : order.at[i];
 }
 
-void put(bool second, uint i, uint survivor) {
+void put(bool second, uint i, uint splat_index) {
     if (second) {
-        scratch.at[i] = survivor;
+        scratch.at[i] = splat_index;
     } else {
-        order.at[i] = survivor;
+        order.at[i] = splat_index;
     }
 }
 
@@ -27,10 +27,10 @@ void publish() {
     barrier();
 }
 
-// The whole workgroup carries survivors to the other buffer by one digit of their numbers. The includer says how.
+// The whole workgroup carries splats to the other buffer by one digit of their numbers. The includer says how.
 void sort_by_digit(bool second, uint begin, uint end, uint digit_number);
 
-// Survivors that each invocation waits for together, STEPS apart by the workgroup's size; the includer says how many.
+// Splats that each invocation waits for together, STEPS apart by the workgroup's size; the includer says how many.
 void copy_back(uint begin, uint end) {
     for (uint first = begin; first < end; first += STEPS * gl_WorkGroupSize.x) {
         uint own[STEPS];

@@ -27,7 +27,7 @@ struct ViewData {
     float near_cut; // the depth from which centres are drawn, the scene's units
 };
 
-// The order of the survivors.
+// The order of the splats.
 struct OrderData {
     uint key_near; // bits of the nearest depth a centre can have
     uint key_span; // by how much the farthest depth's bits exceed them
@@ -126,7 +126,7 @@ struct SurfaceData {
     vec4 diagonal; // SURFACE_QUADRIC: the factors of the coordinates' squares; w unused
     vec4 across; // SURFACE_QUADRIC: half the factors of x y, x z and y z; w unused
     uint kind; // SURFACE_*
-    uint joins; // how many answers on a stack it joins with those below, and from JOIN_SHIFT on a bit each: 1 for or
+    uint operators; // how many answers on a stack it joins with those below, and from OPERATOR_SHIFT on a bit each: 1 for or
     uint pad[2]; // unused
 };
 
@@ -144,7 +144,7 @@ struct Block {
     vec4 high_sigma; // greatest ones; largest standard deviation, negative where some may miss all pixels though in view
 };
 
-// A survivor on the screen: what each pixel that it covers needs of it, 64 bytes. splats.glsl says how they lie in memory.
+// A splat on the screen: what each pixel that it covers needs of it, 64 bytes. splats.glsl says how they lie in memory.
 struct Splat {
     vec4 centre_conic; // centre, px; k0 k1 of the inverse 2D covariance's Cholesky factor, 1/px
     vec4 conic_cut; // k2; opacity; the weight's z at the centre and dz/dx, as cut.glsl says
@@ -152,7 +152,7 @@ struct Splat {
     vec4 curvature_depth; // of the weight's z: the factors of dx^2, dx dy and dy^2; the centre's depth
 };
 
-// The parallelogram that a survivor is drawn with, where quads are drawn, relative to its centre, px: the points middle + s
+// The parallelogram that a splat is drawn with, where quads are drawn, relative to its centre, px: the points middle + s
 // first + t second with s and t in [-1, 1].
 struct Quad {
     vec2 middle; // its middle
@@ -175,26 +175,26 @@ struct FrameCounts {
     uint culled; // outside the view or too faint
     uvec4 clip_groups; // indirect dispatch over the blocks that the clip may cut; w: how many
     uvec4 classify_groups; // indirect dispatch over the blocks that neither view nor clip settles; w: how many
-    uvec4 compact_groups; // indirect dispatch over the blocks with survivors; w: how many
-    uvec4 project_groups; // indirect dispatch over the survivors
+    uvec4 compact_groups; // indirect dispatch over the blocks with splats; w: how many
+    uvec4 project_groups; // indirect dispatch over the splats
     uvec4 cutoff_groups; // indirect dispatch over the cutoff Gaussians
-    uvec4 recut_groups; // indirect dispatch over the survivors that a moved clip changes; w: how many
+    uvec4 recut_groups; // indirect dispatch over the splats that a moved clip changes; w: how many
     uvec4 sort_groups; // indirect dispatch of the sort's runs or partitions
     uvec4 sort_pass_groups[4]; // the same for each of its passes; none where the keys agree
     uvec4 draw; // indirect draw: vertices, instances, first vertex, first instance
-    uvec4 mesh_groups; // indirect mesh tasks; w: survivors
+    uvec4 mesh_groups; // indirect mesh tasks; w: splats
     uvec4 span_count_groups; // indirect dispatch of the runs over the splats, which count their spans of tiles
     uvec4 span_groups; // indirect dispatch of the runs over the splats, which list their spans of tiles
     uvec4 part_groups; // indirect dispatch of the parts of the rows of tiles
     uvec4 row_groups; // indirect dispatch of the rows of tiles
     uvec4 pair_groups; // indirect dispatch of the partitions of the pairs of macro-tile and splat
     uvec4 batch_groups; // indirect dispatch of the batches of splats of a macro-tile
-    uvec4 tile_groups; // indirect dispatch of the tiles; with the kernels for GPUs but for those of several_tile_groups
+    uvec4 tile_groups; // indirect dispatch of the tiles; with the pipelines for GPUs but for those of several_tile_groups
     uvec4 several_tile_groups; // indirect dispatch of the tiles in which several surfaces cut a splat
     uvec4 composite; // indirect draw of the tiles' picture
     uint pairs; // pairs of tile and splat; those of macro-tile and splat where already these have no room
     uint tiled; // 1: the pairs have room, and tiles draw the splats
-    uint sort_base; // what the sort counts the survivors' keys from
+    uint sort_base; // what the sort counts the splats' keys from
     uint sort_skipped; // passes of the sort, from the first, that their keys do without
     uint macro_pairs; // pairs of macro-tile and splat that have room; some of them may hold no tile
     uint pad[3]; // unused
@@ -210,9 +210,9 @@ const uint SURFACE_PLANE = 0u;
 const uint SURFACE_QUADRIC = 1u;
 const uint OP_AND = 0u;
 const uint OP_OR = 1u;
-// By their joins.
+// By their operators.
 const uint OP_PARTS = 2u;
-const uint JOIN_SHIFT = 5u;
+const uint OPERATOR_SHIFT = 5u;
 // What a pixel shows of its splats.
 const uint SHOW_COLOUR = 0u;
 const uint SHOW_WEIGHT = 1u;

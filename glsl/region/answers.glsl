@@ -9,27 +9,27 @@ struct Answers {
     uint maybe;
 };
 
-// A surface's joins: how many there are, and of each whether it is a union.
-uint join_count(uint joins) {
-    return joins & ((1u << JOIN_SHIFT) - 1u);
+// A surface's operators: how many there are, and of each whether it is a union.
+uint operator_count(uint operators) {
+    return operators & ((1u << OPERATOR_SHIFT) - 1u);
 }
 
-bool joins_by_or(uint joins, uint place) {
-    return (joins >> (JOIN_SHIFT + place) & 1u) != 0u;
+bool is_or(uint operators, uint place) {
+    return (operators >> (OPERATOR_SHIFT + place) & 1u) != 0u;
 }
 
-// The stack after one more answer and its joins.
-uint answered(uint stack, bool answer, uint joins) {
+// The stack after one more answer and its operators.
+uint answered(uint stack, bool answer, uint operators) {
     stack = stack << 1 | (answer ? 1u : 0u);
-    for (uint i = 0u; i < join_count(joins); i++) {
-        stack = joins_by_or(joins, i) ? stack >> 1 | (stack & 1u) : (stack >> 1) & (stack | ~1u);
+    for (uint i = 0u; i < operator_count(operators); i++) {
+        stack = is_or(operators, i) ? stack >> 1 | (stack & 1u) : (stack >> 1) & (stack | ~1u);
     }
     return stack;
 }
 
-void answer(inout Answers answers, uint side, uint joins) {
-    answers.surely = answered(answers.surely, side == SIDE_VISIBLE, joins);
-    answers.maybe = answered(answers.maybe, side != SIDE_INVISIBLE, joins);
+void answer(inout Answers answers, uint side, uint operators) {
+    answers.surely = answered(answers.surely, side == SIDE_VISIBLE, operators);
+    answers.maybe = answered(answers.maybe, side != SIDE_INVISIBLE, operators);
 }
 
 uint side_answered(Answers answers) {

@@ -26,14 +26,14 @@ void write_shortlist(uint block, Block bounds) {
             has_room = entries < SHORTLIST_SURFACES;
             if (has_room) {
                 shortlists.at[place + 1u + 2u * entries] = surface;
-                entry_joins[first_entry + entries] = 0u;
+                entry_operators[first_entry + entries] = 0u;
                 part = 2u + entries++;
             }
         }
-        push_part(part, surfaces.at[surface].joins, first_part, first_entry, depth, entries);
+        push_part(part, surfaces.at[surface].operators, first_part, first_entry, depth, entries);
     }
     for (uint i = 0u; i < entries; i++) {
-        shortlists.at[place + 2u + 2u * i] = entry_joins[first_entry + i];
+        shortlists.at[place + 2u + 2u * i] = entry_operators[first_entry + i];
     }
     uint side = parts[first_part] == 0u ? SIDE_INVISIBLE : parts[first_part] == 1u ? SIDE_VISIBLE : SIDE_CUTOFF;
     shortlists.at[place] = has_room ? entries << 2 | side : ALL_SURFACES;

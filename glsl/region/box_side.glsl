@@ -28,7 +28,7 @@ uint box_side(vec3 middle, vec3 half_size, float support) {
     if (COMBINED && LAYER.region.op == OP_PARTS) {
         Answers answers = Answers(0u, 0u);
         for (uint i = 0u; i < surface_count(); i++) {
-            answer(answers, surface_box_side(surface_at(i), middle, half_size, support), joins_at(i));
+            answer(answers, surface_box_side(surface_at(i), middle, half_size, support), operators_at(i));
         }
         return side_answered(answers);
     }

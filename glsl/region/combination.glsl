@@ -13,7 +13,7 @@ UnitSurface entry_of(uint base, uint entry) {
     return UnitSurface(cut_records.at[at], cut_records.at[at + 1u].xyz, cut_records.at[at + 2u].xyz);
 }
 
-uint joins_of(uint base, uint entry) {
+uint operators_of(uint base, uint entry) {
     return to_uint(cut_records.at[base + CUT_HEADER + ENTRY_VECTORS * entry + 1u].w);
 }
 
@@ -114,7 +114,7 @@ float measured(Line line, uint base, uint count, float start, float end, uint me
             next = stretch.end > t ? min(next, stretch.end) : next;
             // The side of what comes next on the line.
             bool keeps = (t >= stretch.start && t < stretch.end) == stretch.between;
-            stack = answered(stack, keeps, joins_of(base, i));
+            stack = answered(stack, keeps, operators_of(base, i));
         }
         float here = measure_to(measure, next, front);
         total += (stack & 1u) != 0u ? here - before : 0.0;
@@ -163,12 +163,12 @@ float measured_widely(Line line, uint base, uint count, float start, float end, 
 }
 
 // The answers of a region for eight combinations of sides, a byte on a stack of eight.
-uvec2 bytes_answered(uvec2 stack, uint answers, uint joins) {
+uvec2 bytes_answered(uvec2 stack, uint answers, uint operators) {
     stack = uvec2(stack.x << 8 | answers, stack.y << 8 | stack.x >> 24);
-    for (uint i = 0u; i < join_count(joins); i++) {
+    for (uint i = 0u; i < operator_count(operators); i++) {
         uvec2 below = uvec2(stack.x >> 8 | stack.y << 24, stack.y >> 8);
         uint top = stack.x & 0xffu;
-        stack = uvec2(joins_by_or(joins, i) ? below.x | top : below.x & (top | ~0xffu), below.y);
+        stack = uvec2(is_or(operators, i) ? below.x | top : below.x & (top | ~0xffu), below.y);
     }
     return stack;
 }
@@ -217,7 +217,7 @@ float share_of_sides(Line line, uint base, uint count, out uint open) {
             }
             pattern = side == 0u ? here : crossing.between ? pattern & here : pattern | here;
         }
-        stack = bytes_answered(stack, pattern, joins_of(base, i));
+        stack = bytes_answered(stack, pattern, operators_of(base, i));
     }
     uint answers = stack.x & 0xffu;
     if (open == 0u || open > 3u) {
@@ -246,7 +246,7 @@ float share_of_sides(Line line, uint base, uint count, out uint open) {
 bool combined_keeps(uint base, uint count, vec3 point) {
     uint stack = 0u;
     for (uint i = 0u; i < count; i++) {
-        stack = answered(stack, value_at(entry_of(base, i), point) >= 0.0, joins_of(base, i));
+        stack = answered(stack, value_at(entry_of(base, i), point) >= 0.0, operators_of(base, i));
     }
     return (stack & 1u) != 0u;
 }

@@ -14,7 +14,7 @@ uint gaussian_side(mat3 axes, vec3 position, float deviations) {
     if (COMBINED && LAYER.region.op == OP_PARTS) {
         Answers answers = Answers(0u, 0u);
         for (uint i = 0u; i < surface_count(); i++) {
-            answer(answers, surface_gaussian_side(surface_at(i), axes, position, deviations), joins_at(i));
+            answer(answers, surface_gaussian_side(surface_at(i), axes, position, deviations), operators_at(i));
         }
         return side_answered(answers);
     }

@@ -9,7 +9,7 @@
 const uint PART_DEPTH = 18u;
 
 shared uint parts[HAS_PARTS ? PART_DEPTH * gl_WorkGroupSize.x : 1u];
-shared uint entry_joins[HAS_PARTS ? PART_ENTRIES * gl_WorkGroupSize.x : 1u];
+shared uint entry_operators[HAS_PARTS ? PART_ENTRIES * gl_WorkGroupSize.x : 1u];
 
 // The part that two parts make. `entries` is how many surfaces the list has so far.
 uint joined(uint below, uint top, bool is_or, uint first_entry, inout uint entries) {
@@ -27,20 +27,20 @@ uint joined(uint below, uint top, bool is_or, uint first_entry, inout uint entri
         return decided;
     }
     uint last = first_entry + entries - 1u;
-    uint joins = entry_joins[last];
-    uint count = join_count(joins);
-    entry_joins[last] = joins + 1u + (is_or ? 1u << (JOIN_SHIFT + count) : 0u);
+    uint operators = entry_operators[last];
+    uint count = operator_count(operators);
+    entry_operators[last] = operators + 1u + (is_or ? 1u << (OPERATOR_SHIFT + count) : 0u);
     return below;
 }
 
 // Puts a part onto the stack and joins it with those below.
-void push_part(uint part, uint joins, uint first_part, uint first_entry, inout uint depth, inout uint entries) {
+void push_part(uint part, uint operators, uint first_part, uint first_entry, inout uint depth, inout uint entries) {
     parts[first_part + depth++] = part;
-    for (uint i = 0u; i < join_count(joins); i++) {
+    for (uint i = 0u; i < operator_count(operators); i++) {
         depth--;
         uint top = parts[first_part + depth];
         uint below = parts[first_part + depth - 1u];
-        parts[first_part + depth - 1u] = joined(below, top, joins_by_or(joins, i), first_entry, entries);
+        parts[first_part + depth - 1u] = joined(below, top, is_or(operators, i), first_entry, entries);
     }
 }
 

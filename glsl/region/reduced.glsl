@@ -79,14 +79,14 @@ uint write_reduced(uint base, Footprint f, vec3 position, float deviations, out 
                 cut_records.at[at] = s.half_space * inverse;
                 cut_records.at[at + 1u] = vec4(s.diagonal * inverse, 0.0);
                 cut_records.at[at + 2u] = vec4(s.across * inverse, 0.0);
-                entry_joins[first_entry + entries] = 0u;
+                entry_operators[first_entry + entries] = 0u;
                 part = 2u + entries++;
             }
         }
-        push_part(part, joins_at(i), first_part, first_entry, depth, entries);
+        push_part(part, operators_at(i), first_part, first_entry, depth, entries);
     }
     for (uint i = 0u; i < entries; i++) {
-        cut_records.at[base + CUT_HEADER + ENTRY_VECTORS * i + 1u].w = float(entry_joins[first_entry + i]);
+        cut_records.at[base + CUT_HEADER + ENTRY_VECTORS * i + 1u].w = float(entry_operators[first_entry + i]);
     }
     return min(parts[first_part], 2u);
 }

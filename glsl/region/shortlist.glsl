@@ -1,7 +1,7 @@
 // The surfaces that an invocation has to ask: all of its layer's region, or those of its block's shortlist, which keeps of the
 // region what the block's bounds leave open. A region of many surfaces so costs a Gaussian no more than those near it. A
 // shortlist is a word, 4 times the number of its surfaces and the side of the block, and for each surface its number and its
-// joins. Included after the buffer `shortlists` is declared.
+// operators. Included after the buffer `shortlists` is declared.
 #ifndef RARA_REGION_SHORTLIST
 #define RARA_REGION_SHORTLIST
 #include "region/surface.glsl"
@@ -49,9 +49,9 @@ uint surface_at(uint i) {
     return has_shortlist() ? shortlists.at[shortlist_place + 1u + 2u * i] : LAYER.region.first_surface + i;
 }
 
-// The joins that follow a surface's answer.
-uint joins_at(uint i) {
-    return has_shortlist() ? shortlists.at[shortlist_place + 2u + 2u * i] : surfaces.at[surface_at(i)].joins;
+// The operators that follow a surface's answer.
+uint operators_at(uint i) {
+    return has_shortlist() ? shortlists.at[shortlist_place + 2u + 2u * i] : surfaces.at[surface_at(i)].operators;
 }
 
 #endif

@@ -55,7 +55,7 @@ uint combination_side(uint base, uint flags, vec2 delta, vec2 middle) {
     TilePoints points = tile_points(tile, TILE_MARGIN * (CLIP_MODE == MODE_RARA ? push.params.sigma : PHI_ONE));
     Answers answers = Answers(0u, 0u);
     for (uint i = 0u; i < flags >> CUT_COUNT_SHIFT; i++) {
-        answer(answers, surface_side(tile, points, entry_of(base, i)), joins_of(base, i));
+        answer(answers, surface_side(tile, points, entry_of(base, i)), operators_of(base, i));
     }
     return side_answered(answers);
 }

@@ -36,8 +36,8 @@ pub const RECLIP_WORDS: u32 = 32;
 pub const OPACITY_SPANNING: f32 = 0.006;
 /// Standard deviation on the screen up to which single precision surely finds a splat's conic, px.
 pub const DRAWABLE_DEVIATION: f32 = 1e6;
-/// Survivors a workgroup of project and cutoff handles.
-pub const SURVIVOR_GROUP_SIZE: u32 = 64;
+/// Splats a workgroup of project and cutoff handles.
+pub const SPLAT_GROUP_SIZE: u32 = 64;
 /// Splats a mesh workgroup emits: 4 vertices and 2 triangles each, half of the least that Vulkan guarantees.
 pub const MESH_GROUP_SIZE: u32 = 32;
 /// Columns of pixels of a tile.
@@ -68,14 +68,14 @@ pub const RADIX_GROUP_SIZE: u32 = 256;
 /// Consecutive keys of such a workgroup: its partition.
 pub const RADIX_PARTITION: u32 = 4096;
 /// The most groups of splats of one depth that are more than such a workgroup sorts.
-pub const MOST_CROWDS: u32 = 1020;
+pub const MOST_LARGE_TIES: u32 = 1020;
 /// The most parts into which the scene's numbers are divided to sort such a group.
 pub const MOST_STRETCHES: u32 = 256;
 /// The fewest partitions of such a part.
 pub const LEAST_STRETCH: u32 = 4;
 /// Counts of an invocation in a turn of that sort's scans.
 pub const RADIX_SCAN_COUNTS: u32 = 8;
-/// Tiles across a macro-tile, in which kernels for GPUs collect splats before they list those of each tile. A picture
+/// Tiles across a macro-tile, in which pipelines for GPUs collect splats before they list those of each tile. A picture
 /// of 1920x1080 then has 255 macro-tiles, one fewer than a digit of the sort has values.
 pub const MACRO_COLUMNS: u32 = 16;
 /// Tiles down a macro-tile.

@@ -19,7 +19,7 @@ pub type PFN_vkGetInstanceProcAddr = Option<vk::PFN_vkGetInstanceProcAddr>;
 /// A host's device as rara uses it. Several threads may use it at once.
 pub struct RaraDevice(pub(crate) Device);
 
-/// For what kind of machine kernels are chosen.
+/// For what kind of machine pipelines are chosen.
 pub type RaraShape = u32;
 /// The one that the device says it is. The default.
 pub const RARA_SHAPE_AUTO: RaraShape = 0;
@@ -60,11 +60,11 @@ pub struct RaraAdoptDesc {
     /// True when subgroupSizeControl and computeFullSubgroups were enabled, for which the host's chain needs
     /// VkPhysicalDeviceVulkan13Features or VkPhysicalDeviceSubgroupSizeControlFeatures. Default: false.
     pub full_subgroups: vk::Bool32,
-    /// For what kind of machine kernels are chosen. Pictures depend on it only by the rounding of sums. Default:
+    /// For what kind of machine pipelines are chosen. Pictures depend on it only by the rounding of sums. Default:
     /// RARA_SHAPE_AUTO.
     pub shape: RaraShape,
-    /// With RARA_SHAPE_GPU the invocations of a subgroup that kernels ask for, a power of two that the device can be asked
-    /// for; 0, the default, for kernels without subgroup operations. Otherwise ignored.
+    /// With RARA_SHAPE_GPU the invocations of a subgroup that pipelines ask for, a power of two that the device can be asked
+    /// for; 0, the default, for pipelines without subgroup operations. Otherwise ignored.
     pub subgroup: u32,
     /// Called once, when rara uses nothing of the host's any more, with `release_user`: by the call that ends the last of the
     /// RaraDevice and of what was made from it. Until then the host keeps its device. It may be on any thread, must throw

@@ -91,7 +91,7 @@ fn forward(record: &Record<'_>) {
 /// Sends the log of the whole process, up to the level of rara_set_log_level, to a function of the host's; with null, as in
 /// the beginning, nobody gets it. `user` is what the function is given.
 ///
-/// RARA_LOG_LEVEL_INFO tells of devices that were adopted and for which kernels, of scenes, and of how splats become pixels
+/// RARA_LOG_LEVEL_INFO tells of devices that were adopted and for which pipelines, of scenes, and of how splats become pixels
 /// and why, where that changes. RARA_LOG_LEVEL_DEBUG tells of each pipeline that is compiled and how long that took, and of
 /// each buffer: a frame that is like one before has neither. RARA_LOG_LEVEL_TRACE tells of each frame.
 ///

@@ -18,7 +18,7 @@ Examples:
   rara measure model -o measured          # draws the same frames, and compares each stage
 
 The frames are those of generated scenes of 1 M and 5 M Gaussians at 1920x1080, whole and cut in half, drawn by tiles
-with the kernels for GPUs. A pass takes the longest of what its bytes, its instructions and its longest chain of loads
+with the pipelines for GPUs. A pass takes the longest of what its bytes, its instructions and its longest chain of loads
 take, and a gap; the guide's chapter on GPUs says what that leaves out. The folder of -o gets model.md and model.csv.")]
 pub(super) struct Model {
     /// Only scenes of at most so many Gaussians

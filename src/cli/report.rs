@@ -101,7 +101,7 @@ impl FrameRecord {
     }
 }
 
-/// The kind of machine that kernels were chosen for, and the reason.
+/// The kind of machine that pipelines were chosen for, and the reason.
 #[derive(Debug, Serialize)]
 struct ShapeReport {
     #[serde(flatten)]

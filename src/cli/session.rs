@@ -209,7 +209,7 @@ impl Session {
         self.headless.scene_bytes()
     }
 
-    /// The kind of machine that kernels were chosen for, and the reason.
+    /// The kind of machine that pipelines were chosen for, and the reason.
     pub(super) fn shape(&self) -> (DeviceShape, &'static str) {
         let device = self.headless.device();
         (device.shape(), device.shape_reason())

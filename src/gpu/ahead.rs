@@ -2,7 +2,7 @@
 //!
 //! Drivers for GPUs compile a pipeline when it is made. Mesa's driver for CPUs, lavapipe, compiles a compute shader when it is
 //! dispatched first, one after the other on the one thread of its queue, and keeps the result in a folder that all
-//! processes share. So that a first frame does not wait for one core, its kernels are dispatched ahead, without a workgroup, on
+//! processes share. So that a first frame does not wait for one core, its pipelines are dispatched ahead, without a workgroup, on
 //! several devices, each with a queue of its own; the frame then finds them in that folder.
 
 use std::collections::BTreeSet;
@@ -36,20 +36,22 @@ impl Ahead {
         Some(Self { path, known })
     }
 
-    /// Has the driver compile those of the kernels that it is not known to have compiled. An error costs time alone.
-    fn compile(&self, device: &Device, kernels: &[ComputeDesc<'_>]) {
+    /// Has the driver compile those of the pipelines that it is not known to have compiled. An error costs time alone.
+    fn compile(&self, device: &Device, pipelines: &[ComputeDesc<'_>]) {
         let known = || self.known.lock().unwrap_or_else(PoisonError::into_inner);
-        let kernels = kernels.iter().map(|desc| (desc, hash(device, desc)));
+        let pipelines = pipelines.iter().map(|desc| (desc, hash(device, desc)));
         let new: Vec<_> = {
             let known = known();
-            kernels.filter(|(_, hash)| !known.contains(hash)).collect()
+            pipelines
+                .filter(|(_, hash)| !known.contains(hash))
+                .collect()
         };
         if new.is_empty() {
             return;
         }
         // A dispatcher's instance is its own too: when that goes, what the driver has compiled is in its folder.
         let compile = |own: &Dispatcher, (desc, _): &(&_, _)| own.dispatch(desc);
-        // A single kernel takes as long on the frame's own queue.
+        // A single pipeline takes as long on the frame's own queue.
         let done = match new.len() {
             1 => Ok(Vec::new()),
             _ => on_threads(&new, || Dispatcher::like(device), compile),
@@ -81,10 +83,10 @@ impl Ahead {
     }
 }
 
-/// A device on which kernels are dispatched for the sake of their compilation.
+/// A device on which pipelines are dispatched for the sake of their compilation.
 struct Dispatcher {
     device: Device,
-    /// The buffer that stands for all of a kernel's: nothing reads or writes it.
+    /// The buffer that stands for all of a pipeline's: nothing reads or writes it.
     buffer: Buffer,
 }
 
@@ -123,7 +125,7 @@ impl Dispatcher {
     }
 }
 
-/// The hash that tells a kernel's compilation from others by the same driver.
+/// The hash that tells a pipeline's compilation from others by the same driver.
 fn hash(device: &Device, desc: &ComputeDesc<'_>) -> u64 {
     let constants = desc.constants.iter().flat_map(|(id, value)| [id, value]);
     let code = desc.shader.code(desc.bindings).iter();
@@ -144,12 +146,12 @@ fn threads() -> usize {
 
 impl Device {
     /// Makes a pipeline of each of `wanted`, on all cores where the device is our own: a host's device is used by the thread
-    /// alone that calls. Counts how long it takes. `kernel` describes those that compute.
+    /// alone that calls. Counts how long it takes. `pipeline` describes those that compute.
     #[doc(hidden)]
     pub fn making_pipelines<T: Sync, R: Send>(
         &self,
         wanted: &[T],
-        kernel: impl Fn(&T) -> Option<ComputeDesc<'_>>,
+        pipeline: impl Fn(&T) -> Option<ComputeDesc<'_>>,
         make: impl Fn(&T) -> Result<R> + Sync,
     ) -> Result<Vec<R>> {
         let begin = Instant::now();
@@ -158,10 +160,10 @@ impl Device {
         let made = if !self.is_own() || threads() < 2 || wanted.len() < 2 {
             wanted.iter().map(make).collect()
         } else {
-            let kernels: Vec<_> = wanted.iter().filter_map(kernel).collect();
+            let pipelines: Vec<_> = wanted.iter().filter_map(pipeline).collect();
             thread::scope(|scope| {
                 if let Some(ahead) = self.inner.ahead.get() {
-                    scope.spawn(move || ahead.compile(self, &kernels));
+                    scope.spawn(move || ahead.compile(self, &pipelines));
                 }
                 on_threads(wanted, || Ok(()), |(), item| make(item))
             })

@@ -22,7 +22,7 @@ pub struct DeviceDesc {
     pub statistics: bool,
     /// The name that drivers and capture tools show.
     pub application_name: String,
-    /// The kind of machine that kernels are chosen for; `None` is what suits the device.
+    /// The kind of machine that pipelines are chosen for; `None` is what suits the device.
     pub shape: Option<DeviceShape>,
 }
 
@@ -82,7 +82,7 @@ pub struct AdoptDesc {
     /// The source of all device memory in place of an allocator, for a host whose own is no `gpu_allocator`. `None` where there
     /// is none.
     pub memory: Option<Arc<dyn MemorySource>>,
-    /// The kind of machine that kernels are chosen for; `None` is what suits the device.
+    /// The kind of machine that pipelines are chosen for; `None` is what suits the device.
     pub shape: Option<DeviceShape>,
     /// Whatever keeps the host's device and instance alive: it is dropped when the last of the [`Device`](super::Device)'s clones and of
     /// what was made from them is gone. `None` where the host sees to it.

@@ -40,7 +40,7 @@ pub(super) struct Inner {
     pipeline_cache: vk::PipelineCache,
     /// How long the driver has made pipelines.
     pub(super) pipeline_ns: AtomicU64,
-    /// How kernels are compiled ahead; empty where they are not.
+    /// How pipelines are compiled ahead; empty where they are not.
     pub(super) ahead: OnceLock<Ahead>,
     /// What is called when pipelines are made.
     pub(super) on_compile: OnceLock<OnCompile>,
@@ -84,7 +84,7 @@ impl std::fmt::Debug for OnCompile {
 /// A driver that compiles at the first dispatch, and the list of what it is known to have kept.
 #[derive(Debug)]
 pub(super) struct Ahead {
-    /// The file of the list, a hash a line. It is no more than a hint: where it names a kernel that the driver has lost, the
+    /// The file of the list, a hash a line. It is no more than a hint: where it names a pipeline that the driver has lost, the
     /// frame's own device compiles that.
     pub(super) path: PathBuf,
     pub(super) known: Mutex<BTreeSet<u64>>,
@@ -149,7 +149,7 @@ impl Device {
         &self.inner.info
     }
 
-    /// The kind of machine that kernels are chosen for. The environment variable `RARA_SHAPE` (`cpu`, `gpu`, or `gpu:N` with
+    /// The kind of machine that pipelines are chosen for. The environment variable `RARA_SHAPE` (`cpu`, `gpu`, or `gpu:N` with
     /// subgroups of N) overrides what suits the device, and a device's description overrides both.
     pub fn shape(&self) -> DeviceShape {
         self.inner.shape

@@ -177,7 +177,7 @@ impl Device {
         };
         let has = |feature| if feature { "" } else { "no " };
         log::info!(
-            "{} ({}) was adopted for Vulkan {}.{}: kernels for {:?}, {}; {}mesh shaders, {}push descriptors, {}timestamps",
+            "{} ({}) was adopted for Vulkan {}.{}: pipelines for {:?}, {}; {}mesh shaders, {}push descriptors, {}timestamps",
             info.name,
             info.driver,
             vk::api_version_major(support.api_version),

@@ -1,4 +1,4 @@
-//! The kind of machine that a device is, which decides which kernels suit it.
+//! The kind of machine that a device is, which decides which pipelines suit it.
 
 use ash::vk;
 
@@ -6,7 +6,7 @@ use super::devices::DeviceInfo;
 use super::requirements::Support;
 use rara_base::error::{Error, Result};
 
-/// The kind of machine that runs the stages. It decides which kernels are used and how finely their work is divided;
+/// The kind of machine that runs the stages. It decides which pipelines are used and how finely their work is divided;
 /// pictures depend on it only by the rounding of sums.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
@@ -16,16 +16,16 @@ pub enum DeviceShape {
     Cpu,
     /// A graphics processor: many invocations, whose memory accesses are served together.
     Gpu {
-        /// The invocations of a subgroup that kernels ask for, a power of two within [`Support::full_subgroups`]; 0 for
-        /// kernels without subgroup operations.
+        /// The invocations of a subgroup that pipelines ask for, a power of two within [`Support::full_subgroups`]; 0 for
+        /// pipelines without subgroup operations.
         subgroup: u32,
     },
 }
 
-/// The size that kernels were written with in mind. Drivers that offer several take it; the others have one.
+/// The size that pipelines were written with in mind. Drivers that offer several take it; the others have one.
 const USUAL_SUBGROUP: u32 = 32;
 
-/// The shared memory of a workgroup that kernels for GPUs take at most, bytes.
+/// The shared memory of a workgroup that pipelines for GPUs take at most, bytes.
 const SHARED_MEMORY: u32 = 28 << 10;
 
 impl DeviceShape {
@@ -91,7 +91,7 @@ impl DeviceShape {
         match self {
             Self::Gpu { .. } if support.max_shared_memory < SHARED_MEMORY => {
                 Err(Error::Invalid(format!(
-                    "the kernels for GPUs need {SHARED_MEMORY} bytes of shared memory, and this device has {} \
+                    "the pipelines for GPUs need {SHARED_MEMORY} bytes of shared memory, and this device has {} \
                      (maxComputeSharedMemorySize)",
                     support.max_shared_memory
                 )))

@@ -1,4 +1,4 @@
-//! Stage `compact` lists the survivors and the cutoff Gaussians in the order of the scene, and writes the counts and the
+//! Stage `compact` lists the splats and the cutoff Gaussians in the order of the scene, and writes the counts and the
 //! indirect commands of all later stages. No place in a list depends on the order of atomics.
 
 use crate::passes::block_list::{self, groups_of_list};
@@ -11,10 +11,10 @@ use crate::passes::{blocks, classify, shared};
 pub(crate) static STAGE: Stage = Stage::when_finding_view("compact", &[STORAGES], record);
 
 memory! {
-    /// Where the survivors and the cut ones of each block go.
+    /// Where the splats and the cut ones of each block go.
     block_offsets: |plan| 8 * plan.blocks();
     /// The Gaussians that are drawn, and their places among those that are cut.
-    survivors: |plan| 8 * plan.gaussians();
+    splat_gaussians: |plan| 8 * plan.gaussians();
     /// The Gaussians that are cut.
     cutoffs: |plan| 4 * plan.gaussians();
 }
@@ -33,7 +33,7 @@ fn record(recording: &mut Recording<'_, '_>) {
         blocks::MEMORY => [block_sides],
         classify::MEMORY => [masks],
         block_list::MEMORY => [block_list],
-        MEMORY => [block_offsets, survivors, cutoffs],
+        MEMORY => [block_offsets, splat_gaussians, cutoffs],
     });
     recording.dispatch(buffers, (), counted!(compact_groups));
 }

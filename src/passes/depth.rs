@@ -29,7 +29,7 @@ pub(crate) static STAGE: Stage = Stage {
 
 memory! {
     depths: |plan| expected(plan, plan.gaussians() * size_of::<SplatDepth>() as u64);
-    /// The indirect draw of a quad a survivor.
+    /// The indirect draw of a quad a splat.
     depth_draw: |plan| expected(plan, 16);
 }
 
@@ -42,17 +42,17 @@ fn record(recording: &mut Recording<'_, '_>) {
     let buffers = buffers!(depth {
         shared::MEMORY => [frame, surfaces, counts],
         SCENE => [gaussians],
-        compact::MEMORY => [survivors],
+        compact::MEMORY => [splat_gaussians],
         block_list::MEMORY => [shortlists],
         MEMORY => [depths],
     });
     recording.dispatch(buffers, (), counted!(project_groups));
-    // Each survivor is drawn as a quad, also where tiles draw the colours.
+    // Each splat is drawn as a quad, also where tiles draw the colours.
     let quad = [4_u32, 0, 0, 0];
     recording.update(&MEMORY.depth_draw, bytemuck::bytes_of(&quad));
-    let survivors = offset_of!(FrameCounts, mesh_groups) + 3 * size_of::<u32>();
+    let splats = offset_of!(FrameCounts, mesh_groups) + 3 * size_of::<u32>();
     let region = ash::vk::BufferCopy {
-        src_offset: survivors as u64,
+        src_offset: splats as u64,
         dst_offset: 4,
         size: 4,
     };

@@ -34,7 +34,7 @@ static OF_VIEW: [&Stage; 12] = [
     &compact::STAGE,
     // Writes the records from which the fragment stage weights the cut ones.
     &cutoff::STAGE,
-    // Computes conic, quad, colour and depth key of the survivors.
+    // Computes conic, quad, colour and depth key of the splats.
     &project::STAGE,
     // Orders them by depth.
     &sort::STAGE,

@@ -59,12 +59,12 @@ impl FromPlan for () {
 
 /// A compute pipeline that a stage dispatches: a shader of a program, with constants.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Kernel<P> {
+pub(crate) struct Pipeline<P> {
     key: PipelineKey,
     program: PhantomData<P>,
 }
 
-impl<P: Interface> Kernel<P> {
+impl<P: Interface> Pipeline<P> {
     pub(crate) fn new(shader: &'static Shader, constants: P::Constants) -> Self {
         let key = PipelineKey {
             name: P::NAME,
@@ -78,7 +78,7 @@ impl<P: Interface> Kernel<P> {
         }
     }
 
-    /// The same kernel by another name, where a program does the work of two stages.
+    /// The same pipeline by another name, where a program does the work of two stages.
     pub(crate) fn named(mut self, name: &'static str) -> Self {
         self.key.name = name;
         self
@@ -208,7 +208,7 @@ impl Pipelines {
         let bindings = self.bindings;
         let made = device.making_pipelines(
             &missing,
-            |key| key.kernel(bindings),
+            |key| key.compute_desc(bindings),
             |key| key.make(device, bindings),
         )?;
         for (key, pipeline) in missing.into_iter().zip(made) {
@@ -228,8 +228,8 @@ enum AnyPipeline {
 }
 
 impl PipelineKey {
-    /// The description of a kernel; `None` for a draw.
-    fn kernel(&self, bindings: Bindings) -> Option<ComputeDesc<'_>> {
+    /// The description of a compute pipeline; `None` for a draw.
+    fn compute_desc(&self, bindings: Bindings) -> Option<ComputeDesc<'_>> {
         self.draw.is_none().then(|| ComputeDesc {
             name: self.name,
             shader: self.shader.0,
@@ -240,10 +240,11 @@ impl PipelineKey {
 
     fn make(&self, device: &Device, bindings: Bindings) -> Result<AnyPipeline> {
         let begun = Instant::now();
-        let made = match (self.kernel(bindings), self.draw) {
-            (Some(kernel), _) => AnyPipeline::Compute(ComputePipeline::new(device, &kernel)?),
+        let made = match (self.compute_desc(bindings), self.draw) {
+            (Some(desc), _) => AnyPipeline::Compute(ComputePipeline::new(device, &desc)?),
             (None, draw) => {
-                let (Identity(fragment), attachments, depth_test) = draw.expect("no kernel");
+                let (Identity(fragment), attachments, depth_test) =
+                    draw.expect("what computes nothing draws");
                 let desc = GraphicsDesc {
                     name: self.name,
                     front: self.shader.0,

@@ -51,7 +51,7 @@ pub(crate) struct Plan {
 pub(crate) struct Way {
     /// How splats become pixels; never `Auto`.
     pub(crate) raster: Raster,
-    /// For what kind of device kernels are chosen.
+    /// For what kind of device pipelines are chosen.
     pub(crate) shape: DeviceShape,
     /// How the scene's spherical harmonics are stored.
     pub(crate) sh_format: ShFormat,
@@ -82,7 +82,7 @@ pub(crate) struct SceneFacts<'a> {
     pub(crate) reordered: bool,
     pub(crate) sh_degree: u32,
     pub(crate) sh_format: ShFormat,
-    /// For what kind of device kernels are chosen.
+    /// For what kind of device pipelines are chosen.
     pub(crate) shape: DeviceShape,
     /// Invocations of the sort by runs, or 0 for that by partitions.
     pub(crate) sort_runs: u32,

@@ -13,7 +13,7 @@ pub(crate) struct PreviousFrame {
     plan: Plan,
     /// True when the buffers are still those that the frame wrote.
     pub(crate) holds: bool,
-    /// The survivors are all in view, clipped away or not; `Some(true)` if no clip has changed them yet.
+    /// The splats are all in view, clipped away or not; `Some(true)` if no clip has changed them yet.
     base: Option<bool>,
     /// The regions and layers from which stage clip has found the sides.
     region: Option<(RegionData, Layers)>,

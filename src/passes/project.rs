@@ -1,4 +1,4 @@
-//! Stage `project`, one invocation a survivor, computes conic, colour and depth key, the mask of tiles and, where it is
+//! Stage `project`, one invocation a splat, computes conic, colour and depth key, the mask of tiles and, where it is
 //! drawn as one, the quad.
 
 use crate::passes::pipelines::FromPlan;
@@ -16,7 +16,7 @@ use rara_scene::precision::ShFormat;
 pub(crate) static STAGE: Stage = Stage::when_finding_view("project", &[STORAGES], record);
 
 memory! {
-    /// As they lie in glsl/splats.glsl: with kernels for GPUs some of their numbers apart, four splats to a vector.
+    /// As they lie in glsl/splats.glsl: with pipelines for GPUs some of their numbers apart, four splats to a vector.
     splats: |plan| {
         let whole = plan.gaussians() * size_of::<Splat>() as u64;
         match plan.way.shape {
@@ -29,12 +29,12 @@ memory! {
         true => plan.gaussians() * size_of::<Quad>() as u64,
         false => 0,
     };
-    /// The keys of the survivors' depths; with kernels for GPUs twice as much, since their sort has a use for it later.
+    /// The keys of the splats' depths; with pipelines for GPUs twice as much, since their sort has a use for it later.
     depth_keys: |plan| match plan.way.shape {
         DeviceShape::Cpu => 4 * plan.gaussians(),
         DeviceShape::Gpu { .. } => 8 * plan.gaussians(),
     };
-    /// Which tiles each splat touches; empty where tiles are not wanted. Kernels for GPUs have words of the splats' rectangles
+    /// Which tiles each splat touches; empty where tiles are not wanted. Pipelines for GPUs have words of the splats' rectangles
     /// behind the masks (glsl/rects.glsl).
     tile_masks: |plan| {
         let rects = u64::from(plan.keeps_rects()) * plan.gaussians().div_ceil(4);
@@ -66,7 +66,7 @@ fn record(recording: &mut Recording<'_, '_>) {
     let buffers = buffers!(project {
         shared::MEMORY => [frame, counts],
         SCENE => [gaussians, sh],
-        compact::MEMORY => [survivors],
+        compact::MEMORY => [splat_gaussians],
         cutoff::MEMORY => [cut_records],
         MEMORY => [splats, quads, depth_keys, tile_masks],
     });

@@ -1,8 +1,8 @@
 //! The passes of a radix sort for GPUs: reduce, then scan. A workgroup owns a partition of consecutive keys, so that all its
-//! invocations read and write neighbouring memory. Stage `sort` sorts the survivors with it, and stage `bin` the pairs of
+//! invocations read and write neighbouring memory. Stage `sort` sorts the splats with it, and stage `bin` the pairs of
 //! macro-tile and splat.
 
-use crate::passes::pipelines::Kernel;
+use crate::passes::pipelines::Pipeline;
 use crate::passes::plan::Plan;
 use crate::passes::recording::{Groups, Recording};
 use crate::passes::shaders::{radix_count, radix_scan, radix_scatter};
@@ -25,21 +25,21 @@ const _: () = {
 /// The keys that are sorted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Keys {
-    /// Those of the survivors, of which the device may skip passes.
-    Survivors,
+    /// Those of the splats, of which the device may skip passes.
+    Splats,
     /// The macro-tiles of pairs of macro-tile and splat.
     Pairs,
 }
 
-/// The kernels of a pass.
+/// The pipelines of a pass.
 #[derive(Debug)]
-pub(super) struct Kernels {
-    count: Kernel<radix_count::Program>,
-    scan: Kernel<radix_scan::Program>,
-    scatter: Kernel<radix_scatter::Program>,
+pub(super) struct RadixPipelines {
+    count: Pipeline<radix_count::Program>,
+    scan: Pipeline<radix_scan::Program>,
+    scatter: Pipeline<radix_scatter::Program>,
 }
 
-impl Kernels {
+impl RadixPipelines {
     pub(super) fn new(plan: &Plan, keys: Keys) -> Self {
         let pairs = keys == Keys::Pairs;
         // By ballots where the device can be asked for subgroups.
@@ -47,11 +47,11 @@ impl Kernels {
             DeviceShape::Gpu { subgroup } if subgroup > 0 => &radix_scatter::SUBGROUP_COMP,
             _ => &radix_scatter::COMP,
         };
-        let count = Kernel::new(&radix_count::COMP, radix_count::Constants { pairs });
-        let scan = Kernel::new(&radix_scan::COMP, radix_scan::Constants { pairs });
-        let scatter = Kernel::new(scatter, radix_scatter::Constants { pairs });
+        let count = Pipeline::new(&radix_count::COMP, radix_count::Constants { pairs });
+        let scan = Pipeline::new(&radix_scan::COMP, radix_scan::Constants { pairs });
+        let scatter = Pipeline::new(scatter, radix_scatter::Constants { pairs });
         match keys {
-            Keys::Survivors => Self {
+            Keys::Splats => Self {
                 count,
                 scan,
                 scatter,
@@ -92,7 +92,7 @@ impl Pass {
     /// Records the count of each partition's digits.
     pub(super) fn count(
         &self,
-        kernels: &Kernels,
+        pipelines: &RadixPipelines,
         recording: &mut Recording<'_, '_>,
         groups: Groups,
     ) {
@@ -107,13 +107,13 @@ impl Pass {
             histogram: self.histogram,
         });
         let params = radix_count::Params { pass: self.number };
-        recording.dispatch_kernel(&kernels.count, buffers, params, groups);
+        recording.dispatch_pipeline(&pipelines.count, buffers, params, groups);
     }
 
     /// Records what follows the count: where each partition's keys of each digit go, and the way there.
     pub(super) fn carry(
         &self,
-        kernels: &Kernels,
+        pipelines: &RadixPipelines,
         recording: &mut Recording<'_, '_>,
         groups: Groups,
     ) {
@@ -126,7 +126,7 @@ impl Pass {
             passes: self.passes,
         };
         let digits = Groups::Count(1 << limits::SORT_BITS);
-        recording.dispatch_kernel(&kernels.scan, buffers, params, digits);
+        recording.dispatch_pipeline(&pipelines.scan, buffers, params, digits);
         let (macro_begins, macro_tiles) = self.macro_begins.unwrap_or((self.order[1], 0));
         let buffers = buffers!(radix_scatter {
             shared::MEMORY => [frame, counts];
@@ -142,6 +142,6 @@ impl Pass {
             pass: self.number,
             macro_tiles,
         };
-        recording.dispatch_kernel(&kernels.scatter, buffers, params, groups);
+        recording.dispatch_pipeline(&pipelines.scatter, buffers, params, groups);
     }
 }

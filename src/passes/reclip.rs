@@ -1,5 +1,5 @@
 //! Stages `reclip` and `recut`, where the camera stands still and the clip moves, find the Gaussians between its old and its
-//! new surface and change what the rasteriser holds of them. The survivors, which are all in view, and their centres,
+//! new surface and change what the rasteriser holds of them. The splats, which are all in view, and their centres,
 //! colours, order and tiles stay.
 
 use crate::passes::block_list::{self, ListFor, groups_of_blocks, groups_of_list};
@@ -22,7 +22,7 @@ pub(crate) static RECLIP: Stage = Stage {
     record: record_reclip,
 };
 
-/// The stage that changes what the rasteriser holds of those survivors.
+/// The stage that changes what the rasteriser holds of those splats.
 pub(crate) static RECUT: Stage = Stage {
     name: "recut",
     needed: |plan| plan.reclips(),
@@ -37,7 +37,7 @@ memory! {
     revisits: |plan| reclipped(plan, 4 * plan.blocks());
     /// What is kept of each block.
     reclips: |plan| reclipped(plan, 4 * u64::from(limits::RECLIP_WORDS) * plan.blocks());
-    /// The survivors that change, and their places among those that are cut.
+    /// The splats that change, and their places among those that are cut.
     recuts: |plan| reclipped(plan, 8 * plan.gaussians());
     /// The tiles that hold any of these.
     dirty: |plan| reclipped(plan, plan.when_tiled(4 * u64::from(plan.data.tiles.tile_count)));
@@ -57,7 +57,7 @@ fn record_reclip(recording: &mut Recording<'_, '_>) {
         block_list::MEMORY => [shortlists],
         MEMORY => [revisits, reclips],
     });
-    // No clip may have changed the survivors yet.
+    // No clip may have changed the splats yet.
     let fresh = matches!(recording.plan.work, Work::Reclip { fresh: true, .. });
     let params = reclip_blocks::Params {
         fresh: fresh.into(),
@@ -99,7 +99,7 @@ fn record_recut(recording: &mut Recording<'_, '_>) {
     let buffers = buffers!(recut {
         shared::MEMORY => [frame, counts],
         SCENE => [gaussians],
-        compact::MEMORY => [survivors],
+        compact::MEMORY => [splat_gaussians],
         cutoff::MEMORY => [cut_records],
         project::MEMORY => [tile_masks, splats, quads],
         MEMORY => [recuts, dirty],

@@ -3,7 +3,7 @@
 use ash::vk;
 
 use crate::passes::buffers::Buffers;
-use crate::passes::pipelines::{FromPlan, Kernel, PipelineKey, Pipelines};
+use crate::passes::pipelines::{FromPlan, Pipeline, PipelineKey, Pipelines};
 use crate::passes::plan::Plan;
 use crate::passes::scene_buffers::SceneBuffers;
 use crate::passes::shaders::{BufferSet, Compute, Interface};
@@ -95,20 +95,20 @@ impl<'a, 'r> Recording<'a, 'r> {
         P: Compute<Buffers<&'static Storage> = B>,
         P::Constants: FromPlan,
     {
-        let kernel = Kernel::<P>::from_plan(self.plan);
-        self.dispatch_kernel(&kernel, buffers, params, groups);
+        let pipeline = Pipeline::<P>::from_plan(self.plan);
+        self.dispatch_pipeline(&pipeline, buffers, params, groups);
     }
 
     /// The same of one of several pipelines of a program.
-    pub(super) fn dispatch_kernel<P: Interface>(
+    pub(super) fn dispatch_pipeline<P: Interface>(
         &mut self,
-        kernel: &Kernel<P>,
+        pipeline: &Pipeline<P>,
         buffers: P::Buffers<&'static Storage>,
         params: P::Params,
         groups: Groups,
     ) {
         match &mut self.target {
-            Target::Dry(need) => need(kernel.key()),
+            Target::Dry(need) => need(pipeline.key()),
             Target::Commands(recorder, resources) => {
                 let buffer = |storage| resources.buffer(storage);
                 let groups = match groups {
@@ -118,7 +118,7 @@ impl<'a, 'r> Recording<'a, 'r> {
                     }
                 };
                 let pipelines = resources.pipelines;
-                kernel.dispatch(pipelines, recorder, (buffers, buffer), params, groups);
+                pipeline.dispatch(pipelines, recorder, (buffers, buffer), params, groups);
             }
         }
     }

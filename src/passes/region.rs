@@ -57,18 +57,18 @@ pub(super) fn surfaces(clip: &Clip, corners: [DVec3; 2]) -> Vec<types::SurfaceDa
     let steps = postfix(clip);
     steps
         .iter()
-        .map(|step| packed(&step.surface, &step.joins, corners))
+        .map(|step| packed(&step.surface, &step.operators, corners))
         .collect()
 }
 
-fn packed(surface: &Surface, joins: &[ClipOp], corners: [DVec3; 2]) -> types::SurfaceData {
+fn packed(surface: &Surface, operators: &[ClipOp], corners: [DVec3; 2]) -> types::SurfaceData {
     let mut data = match surface {
         Surface::Plane(plane) => plane_data(plane),
         Surface::Quadric(quadric) => quadric_data(quadric, corners),
     };
-    data.joins = joins.len() as u32;
-    for (place, op) in joins.iter().enumerate() {
-        data.joins |= u32::from(*op == ClipOp::Or) << (types::JOIN_SHIFT as usize + place);
+    data.operators = operators.len() as u32;
+    for (place, op) in operators.iter().enumerate() {
+        data.operators |= u32::from(*op == ClipOp::Or) << (types::OPERATOR_SHIFT as usize + place);
     }
     data
 }

@@ -4,7 +4,7 @@
 
 use crate::passes::bin::{lists, macro_tiles};
 use crate::passes::buffers::Buffers;
-use crate::passes::pipelines::Kernel;
+use crate::passes::pipelines::Pipeline;
 use crate::passes::plan::Plan;
 use crate::passes::recording::{Recording, counted};
 use crate::passes::shaders::tiles;
@@ -33,7 +33,7 @@ memory! {
     occluders: |plan| plan.occluders.map_or(0, |_| plan.when_tiled(4 * plan.pixels()));
 }
 
-/// The tiles that a dispatch draws: all, or with the kernels for GPUs one of the two lists of those that hold anything.
+/// The tiles that a dispatch draws: all, or with the pipelines for GPUs one of the two lists of those that hold anything.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum List {
     /// All tiles, strip by strip.
@@ -58,7 +58,7 @@ fn drawn_lists(plan: &Plan) -> &'static [List] {
     }
 }
 
-fn kernel(plan: &Plan, list: List) -> Kernel<tiles::Program> {
+fn pipeline(plan: &Plan, list: List) -> Pipeline<tiles::Program> {
     let weight = Weight::from_plan(plan);
     let is_one_of_two = list == List::Few && drawn_lists(plan).len() > 1;
     let work = plan.tile_work;
@@ -82,10 +82,10 @@ fn kernel(plan: &Plan, list: List) -> Kernel<tiles::Program> {
     } else {
         &tiles::COMP
     };
-    let kernel = Kernel::new(shader, constants);
+    let pipeline = Pipeline::new(shader, constants);
     match list {
-        List::All | List::Few => kernel,
-        List::Several => kernel.named("several_tiles"),
+        List::All | List::Few => pipeline,
+        List::Several => pipeline.named("several_tiles"),
     }
 }
 
@@ -123,7 +123,7 @@ fn record(recording: &mut Recording<'_, '_>) {
             list: (list == List::Several).into(),
             ..params
         };
-        recording.dispatch_kernel(&kernel(plan, list), buffers, params, groups);
+        recording.dispatch_pipeline(&pipeline(plan, list), buffers, params, groups);
     }
 }
 

@@ -82,7 +82,7 @@ const MOST_PICTURE: u64 = 1 << 30;
 pub(super) const MOST_TILES: u32 = (MOST_PICTURE / TILE_BYTES) as u32;
 
 /// Runs of the sort and of the bin: on CPU drivers at least as many as all cores have lanes, but few, since each has counts of
-/// its own. The kernels for GPUs have none; they divide their work into partitions.
+/// its own. The pipelines for GPUs have none; they divide their work into partitions.
 pub(super) fn runs(shape: DeviceShape, gaussians: u32) -> u32 {
     match (shape, gaussians) {
         (DeviceShape::Cpu, ..32_768) => 128,

@@ -7,7 +7,7 @@ use rara_base::error::{Error, Result};
 /// a tile, where they are few and large.
 const USUAL_PER_GAUSSIAN: u32 = 2;
 const USUAL_PER_TILE: u32 = 64;
-/// The most pairs, 1.5 GiB of lists, or 2.2 GiB with the kernels for GPUs: frames with more are drawn as quads.
+/// The most pairs, 1.5 GiB of lists, or 2.2 GiB with the pipelines for GPUs: frames with more are drawn as quads.
 pub(super) const MOST: u32 = 1 << 27;
 
 /// Where nothing else draws what is asked for, lists of half the room are tried down to so many pairs.

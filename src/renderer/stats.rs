@@ -25,7 +25,7 @@ impl Renderer {
     /// True when the frame that [`counts`](Self::counts) is about had more pairs of tile and splat than there was room
     /// for, so that it was drawn as quads: the same picture, but slower. Of [`Show`](crate::Show)s that only tiles can make,
     /// and in [linear light](crate::ColorSpace::Linear), nothing was drawn. The next [`configure`](Self::configure) makes
-    /// the room, up to 1.5 GiB, or 2.2 with the kernels for GPUs.
+    /// the room, up to 1.5 GiB, or 2.2 with the pipelines for GPUs.
     pub fn fell_back(&self) -> bool {
         self.oldest().is_some_and(RecordedFrame::fell_back)
     }

@@ -24,7 +24,7 @@ pub struct HeadlessDesc {
     pub trace: Option<Trace>,
     /// Count what the stages do, where the device can.
     pub statistics: bool,
-    /// The kind of machine that kernels are chosen for; `None` is what suits the device.
+    /// The kind of machine that pipelines are chosen for; `None` is what suits the device.
     pub shape: Option<DeviceShape>,
 }
 

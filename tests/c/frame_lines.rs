@@ -114,7 +114,7 @@ fn a_frame_has_lines_for_those_who_embed() {
         has(
             &taken(),
             RARA_LOG_LEVEL_INFO,
-            "was adopted for Vulkan 1.3: kernels for",
+            "was adopted for Vulkan 1.3: pipelines for",
         );
 
         let (text, mut gaussians, mut scene) = (file(), null_mut(), null_mut());

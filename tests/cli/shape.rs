@@ -1,9 +1,9 @@
-//! The kernels of either kind of machine, on whatever device there is.
+//! The pipelines of either kind of machine, on whatever device there is.
 
 use super::{document, folder, line, line_with, scene};
 
-/// The statistics say for what kind of machine kernels were chosen, and why; a kind that cannot be had is refused. The
-/// kernels for GPUs are another sort, and tiles with a pixel in each invocation, and draw the same picture but for the rounding
+/// The statistics say for what kind of machine pipelines were chosen, and why; a kind that cannot be had is refused. The
+/// pipelines for GPUs are another sort, and tiles with a pixel in each invocation, and draw the same picture but for the rounding
 /// of sums; tests/shapes compares them in every mode.
 #[test]
 fn the_shape_is_reported_with_its_reason_and_draws_the_same() {

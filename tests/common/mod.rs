@@ -107,7 +107,7 @@ pub fn headless_unchecked(bindings: Bindings) -> Headless {
     open(bindings, false)
 }
 
-/// A renderer whose every validation message is an error, with the kernels for a kind of device.
+/// A renderer whose every validation message is an error, with the pipelines for a kind of device.
 pub fn headless_shaped(bindings: Bindings, shape: DeviceShape) -> Headless {
     opened(&desc(bindings, true).shape(Some(shape)))
 }

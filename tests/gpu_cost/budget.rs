@@ -40,7 +40,7 @@ const HEADER: &str = "\
 /// What stands before a table.
 fn explained(table: &str) -> &'static str {
     match table {
-        "frames" => "\n# The commands of a frame with the kernels for GPUs.\n",
+        "frames" => "\n# The commands of a frame with the pipelines for GPUs.\n",
         "bytes" => {
             "\n\
 # Bytes of device memory that each pass reads and writes for a thousand of five million Gaussians at 1920x1080, by the\n\

@@ -118,8 +118,8 @@ pub struct Frames {
 }
 
 impl Frames {
-    /// On any device, with the kernels for GPUs, under validation.
-    pub fn on_a_gpus_kernels(size: (u32, u32)) -> Self {
+    /// On any device, with the pipelines for GPUs, under validation.
+    pub fn on_a_gpus_pipelines(size: (u32, u32)) -> Self {
         let desc = DeviceDesc::default()
             .selector(std::env::var("RARA_TEST_DEVICE").ok())
             .validation(true);

@@ -11,7 +11,8 @@ use rara::types::{FrameData, Splat};
 use rara::{Gaussians, Mode, Raster, Renderer, RendererDesc, SceneBuffers, Settings, ShFormat};
 use rara_base::limits;
 use rara_lab::measure::gpu_model::{
-    self, COSTS, FRAMES_FILE, FrameNumbers, KERNELS_FILE, Kernel, ModelFrame, frames, kernels,
+    self, COSTS, FRAMES_FILE, FrameNumbers, ModelFrame, PIPELINES_FILE, PipelineEstimate, frames,
+    pipelines,
 };
 
 use crate::common;
@@ -97,7 +98,7 @@ fn counted(gaussians: usize, drawn: &Drawn, is_cut: bool) -> ModelFrame {
     let splats: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(&drawn.buffer("splats"));
     let shape = DeviceShape::Gpu { subgroup: 0 };
     let splats = common::splats(&splats, data.scene.gaussian_count as usize, shape);
-    let splats = &splats[..numbers.survivors as usize];
+    let splats = &splats[..numbers.splats as usize];
     numbers.tied = tied(splats, &data);
     numbers.masked_pairs = masked(drawn, numbers.macro_pairs);
     numbers.loaded = loaded(splats, drawn, &data);
@@ -183,28 +184,32 @@ fn alpha(splat: &Splat, at: [f32; 2]) -> f32 {
 }
 
 #[test]
-fn the_models_kernels_are_as_a_gpus_compiler_estimates_them() {
+fn the_models_pipelines_are_as_a_gpus_compiler_estimates_them() {
     let driver = match Driver::find() {
         Ok(driver) => driver,
         Err(reason) => {
-            eprintln!("SKIPPED: NO GPU'S COMPILER SAW THE MODEL'S KERNELS: {reason}");
+            eprintln!("SKIPPED: NO GPU'S COMPILER SAW THE MODEL'S PIPELINES: {reason}");
             return;
         }
     };
     let folder = Folder::new("gpu_model");
-    let out = folder.join("kernels");
-    let child = driver.start(GPU, "model::kernels_of_the_device_that_is_pretended", &out);
+    let out = folder.join("pipelines");
+    let child = driver.start(
+        GPU,
+        "model::pipelines_of_the_device_that_is_pretended",
+        &out,
+    );
     let output = child.wait_with_output().expect("the child process ends");
     let error = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{error}");
     let found = fs::read_to_string(out).expect("what the child has found");
     if env::var_os("RARA_RENEW_BUDGET").is_some() {
-        write(KERNELS_FILE, &found);
+        write(PIPELINES_FILE, &found);
         return;
     }
-    let (committed, found) = (kernels(), gpu_model::parse::<Kernel>(&found));
-    let names = |all: &[Kernel]| -> Vec<_> {
-        let name = |kernel: &Kernel| (kernel.pass.clone(), kernel.is_cut);
+    let (committed, found) = (pipelines(), gpu_model::parse::<PipelineEstimate>(&found));
+    let names = |all: &[PipelineEstimate]| -> Vec<_> {
+        let name = |pipeline: &PipelineEstimate| (pipeline.pass.clone(), pipeline.is_cut);
         all.iter().map(name).collect()
     };
     assert_eq!(
@@ -230,10 +235,10 @@ fn the_models_kernels_are_as_a_gpus_compiler_estimates_them() {
 /// Makes the pipelines of the model's frames on whatever device there is, and writes what they are estimated at.
 #[test]
 #[ignore = "another test starts this one for the GPU that is pretended"]
-fn kernels_of_the_device_that_is_pretended() {
+fn pipelines_of_the_device_that_is_pretended() {
     let out = env::var_os(OUT).expect("the test that starts this one names a file");
     let scene = gpu_model::scene(2000);
-    let mut kernels = Vec::new();
+    let mut pipelines = Vec::new();
     for is_cut in [false, true] {
         // A device of its own, so that it has made no other frame's pipelines.
         let device = Device::headless_inspected(&DeviceDesc::default()).expect("a device");
@@ -257,7 +262,7 @@ fn kernels_of_the_device_that_is_pretended() {
                     .unwrap_or_else(|| panic!("{pass}: no {name}"))
                     .1
             });
-            kernels.push(Kernel {
+            pipelines.push(PipelineEstimate {
                 pass: pass.into(),
                 is_cut,
                 latency,
@@ -265,5 +270,5 @@ fn kernels_of_the_device_that_is_pretended() {
             });
         }
     }
-    fs::write(out, gpu_model::text(&kernels)).expect("the file is writable");
+    fs::write(out, gpu_model::text(&pipelines)).expect("the file is writable");
 }

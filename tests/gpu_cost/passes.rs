@@ -22,7 +22,7 @@ const GAUSSIANS: u64 = 5_000_000;
 
 #[test]
 fn passes_are_wide_short_and_frugal_at_five_million_gaussians() {
-    let frames = Frames::on_a_gpus_kernels((1920, 1080));
+    let frames = Frames::on_a_gpus_pipelines((1920, 1080));
     let all = frames.all();
     let cut = all
         .iter()
@@ -56,7 +56,7 @@ fn heavy(picture: FrameNumbers) -> FrameNumbers {
         kept_blocks: blocks,
         layers: 1,
         surfaces: 1,
-        survivors: gaussians,
+        splats: gaussians,
         cut: gaussians / 20,
         changed: gaussians / 20,
         sort_passes: 3,
@@ -77,7 +77,7 @@ const MOST: [u64; 2] = [32, 36];
 
 #[test]
 fn frames_have_the_commands_in_the_budget_and_the_invocations_that_passes_declare() {
-    let frames = Frames::on_a_gpus_kernels(SMALL);
+    let frames = Frames::on_a_gpus_pipelines(SMALL);
     let (mut found, mut seen) = (Table::new(), BTreeSet::new());
     for frame in frames.all().iter().filter(|frame| frame.is_usual()) {
         let is_tiled = frame.raster == Raster::Tiles;
@@ -96,7 +96,7 @@ fn frames_have_the_commands_in_the_budget_and_the_invocations_that_passes_declar
     }
     frames.close();
     budget::check(BTreeMap::from([("frames".into(), found)]), Rule::Ceiling);
-    let frames = Frames::on_a_gpus_kernels(LARGE);
+    let frames = Frames::on_a_gpus_pipelines(LARGE);
     let first = &frames.all()[0];
     seen.extend(check_invocations(&frames, first, &frames.draw(first)));
     frames.close();
@@ -159,7 +159,7 @@ pub fn numbers(drawn: &Drawn) -> FrameNumbers {
         view_blocks: listed(counts.classify_groups),
         kept_blocks: listed(counts.compact_groups),
         layers: data.scene.layer_count.into(),
-        survivors: listed(counts.mesh_groups),
+        splats: listed(counts.mesh_groups),
         cut: counts.cutoff.into(),
         changed: listed(counts.recut_groups),
         sort_passes: (passes - counts.sort_skipped).into(),

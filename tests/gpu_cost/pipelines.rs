@@ -142,7 +142,7 @@ fn of_the_device_that_is_pretended() {
     let large = Frames::on(&DeviceDesc::default(), LARGE);
     large.draw(&all[0]);
     add(&large);
-    // Where no subgroups can be asked for there are other kernels, whatever the frame.
+    // Where no subgroups can be asked for there are other pipelines, whatever the frame.
     let shape = DeviceShape::Gpu { subgroup: 0 };
     let without = Frames::on(&DeviceDesc::default().shape(Some(shape)), SMALL);
     without.draw(&all[0]);

@@ -109,7 +109,7 @@ fn pictures_of_a_row_or_a_column_of_tiles_are_those_of_quads() {
 /// A frame must not depend on what an earlier one left, not even on the order of its splats when only one is left to
 /// sort.
 #[test]
-fn a_lone_survivor_after_many_is_itself() {
+fn a_lone_splat_after_many_is_itself() {
     let mut scene = generate(Kind::Layers, 8, 3);
     for index in 0..scene.len() {
         scene.positions_mut()[index] = glam::Vec3::new(index as f32 * 0.2 - 0.7, 0.0, 0.0);

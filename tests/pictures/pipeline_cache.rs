@@ -39,7 +39,7 @@ fn only_file(folder: &Path) -> PathBuf {
 }
 
 #[test]
-fn kernels_that_lavapipe_compiles_at_their_first_use_are_compiled_ahead_once() {
+fn pipelines_that_lavapipe_compiles_at_their_first_use_are_compiled_ahead_once() {
     let place = Folder::new("pipelines-ahead");
     let folder = place.join("cache");
     let (first, _) = run(PipelineCache::Folder(folder.clone()));

@@ -1,4 +1,4 @@
-//! The same frame by several kinds of kernels, and all that they leave of it.
+//! The same frame by several kinds of pipelines, and all that they leave of it.
 
 use rara::gpu::{Bindings, DeviceShape};
 use rara::types::{FrameCounts, FrameData};
@@ -7,24 +7,24 @@ use rara_base::limits::SORT_BITS;
 
 use crate::common;
 
-/// The most that a channel may differ, of 255: the kernels for CPU drivers carry a weight down a tile's column.
+/// The most that a channel may differ, of 255: the pipelines for CPU drivers carry a weight down a tile's column.
 const APART: f32 = 0.01;
 
-/// What a frame leaves, whichever kernels have drawn it.
+/// What a frame leaves, whichever pipelines have drawn it.
 struct Drawn {
     counts: FrameCounts,
-    /// The parts of the working memory that every kind of kernel fills.
+    /// The parts of the working memory that every kind of pipeline fills.
     buffers: Vec<(&'static str, Vec<u8>)>,
     picture: Picture,
 }
 
-/// A renderer for each kind of kernels, with one scene. The first one is for CPU drivers.
+/// A renderer for each kind of pipelines, with one scene. The first one is for CPU drivers.
 pub struct Shapes {
     renderers: Vec<(DeviceShape, Headless)>,
 }
 
 impl Shapes {
-    /// Kernels for CPU drivers, for GPUs with the device's own subgroups, and for GPUs that cannot be asked for any.
+    /// Pipelines for CPU drivers, for GPUs with the device's own subgroups, and for GPUs that cannot be asked for any.
     pub fn new() -> Self {
         let cpu = common::headless_shaped(Bindings::Mixed, DeviceShape::Cpu);
         let [least, most] = cpu.device().support().full_subgroups;
@@ -33,7 +33,7 @@ impl Shapes {
             let subgroup = least.max(8);
             shapes.push(DeviceShape::Gpu { subgroup });
         } else {
-            eprintln!("SKIPPED: this device has no subgroups of 8; kernels without are compared");
+            eprintln!("SKIPPED: this device has no subgroups of 8; pipelines without are compared");
         }
         let others = shapes.into_iter().map(|shape| {
             let renderer = common::headless_shaped(Bindings::Mixed, shape);
@@ -54,7 +54,7 @@ impl Shapes {
         }
     }
 
-    /// What the frame before has counted with kernels for GPUs.
+    /// What the frame before has counted with pipelines for GPUs.
     pub fn counts(&mut self) -> FrameCounts {
         let (_, renderer) = self.renderers.last_mut().expect("several");
         let bytes = renderer.working_buffer("counts").expect("the counts");
@@ -149,7 +149,7 @@ fn draw(renderer: &mut Headless, camera: &Camera, clip: &Clip, settings: &Settin
     let [keys, order] = [["keys", "order"], ["sorted_keys", "sorted_order"]][passes as usize % 2];
     let records = counts.cutoff as usize * frame.weight.cut_stride as usize * 16;
     let mut wanted = vec![
-        ("survivors", 4 * listed),
+        ("splat_gaussians", 4 * listed),
         ("cutoffs", 4 * counts.cutoff as usize),
         ("cut_records", records),
     ];

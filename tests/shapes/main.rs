@@ -1,4 +1,4 @@
-//! The kernels for GPUs and those for CPU drivers, on whatever device there is: the same orders, lists and records to the bit,
+//! The pipelines for GPUs and those for CPU drivers, on whatever device there is: the same orders, lists and records to the bit,
 //! and the same pictures but for the rounding of a pixel's weight.
 
 #![allow(unreachable_pub, reason = "modules of one test share with each other")]
@@ -29,7 +29,7 @@ const CLIPS: [(Mode, usize, ClipOp); 7] = [
     (Mode::Exact, 2, ClipOp::Or),
 ];
 
-/// Those whose splats have the longest way through the kernels: what else a kernel does depends on the mode, not on the scene.
+/// Those whose splats have the longest way through the pipelines: what else a pipeline does depends on the mode, not on the scene.
 const SPLIT: [(Mode, usize, ClipOp); 2] = [CLIPS[3], CLIPS[5]];
 
 /// Gaussians of a scene: several partitions of the sort.
@@ -88,7 +88,7 @@ fn check_modes(
     let settings = Settings::default().raster(Raster::Tiles);
     let what = format!("{name}, from within");
     shapes.check(&what, &inside.expect("a view"), &clip, &settings);
-    // Quads show the sorted keys, whose buffers the bin uses for more; nothing else of theirs depends on the kernels.
+    // Quads show the sorted keys, whose buffers the bin uses for more; nothing else of theirs depends on the pipelines.
     let settings = Settings::default().raster(Raster::Quad);
     let clip = common::clip(scene, 1, ClipOp::And);
     shapes.check(&format!("{name}, quads"), &camera, &clip, &settings);
@@ -139,9 +139,9 @@ fn many_blocks_in_layers() {
     shapes.close();
 }
 
-/// Survivors that reach no pixel's centre have no pairs, and the frame before has left the counts of many.
+/// Splats that reach no pixel's centre have no pairs, and the frame before has left the counts of many.
 #[test]
-fn survivors_without_pixels() {
+fn splats_without_pixels() {
     let mut shapes = Shapes::new();
     let many = in_layers(5_000, 5_000);
     let settings = Settings::default().raster(Raster::Tiles);
@@ -162,7 +162,7 @@ fn survivors_without_pixels() {
             let drawn = shapes.check_next(&what, &camera, &Clip::default(), &settings);
             missed += usize::from(drawn == 1 && shapes.counts().pairs == 0);
         }
-        assert!(missed > 0, "a survivor without pixels");
+        assert!(missed > 0, "a splat without pixels");
     }
     shapes.close();
 }

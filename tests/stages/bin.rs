@@ -114,7 +114,7 @@ fn check(stages: &mut Stages, what: &str, quads: &[Quad]) -> [usize; 2] {
     assert_eq!(quads.len(), splats.len(), "{what}");
     for (index, (splat, quad)) in splats.iter().zip(quads).enumerate() {
         let ours = &found[index];
-        // Kernels for GPUs leave a mask only where a rectangle does not tell everything.
+        // Pipelines for GPUs leave a mask only where a rectangle does not tell everything.
         let rect = rects.get(index).copied();
         let has_mask = rect.is_none_or(|rect| rect != u32::MAX && rect >= 1 << 30);
         if let Some(rect) = rect.filter(|_| !has_mask) {
@@ -141,7 +141,7 @@ fn check(stages: &mut Stages, what: &str, quads: &[Quad]) -> [usize; 2] {
     [all, ties]
 }
 
-/// Checks the spans of each row of tiles, from which the kernels for CPU drivers make the lists.
+/// Checks the spans of each row of tiles, from which the pipelines for CPU drivers make the lists.
 fn check_rows(stages: &mut Stages, what: &str, found: &[Vec<Span>], order: &[u32], rows: u32) {
     let row_begins: Vec<u32> = stages.read("row_begins");
     let span_splats: Vec<u32> = stages.read("span_splats");
@@ -181,7 +181,7 @@ fn tiles_hold_the_splats_that_the_twin_puts_there() {
             let camera = frame::views(scene)[view];
             // Frames of tiles leave no quads, whose sides bound the outlines.
             stages.draw(&camera, &clip, &settings.raster(Raster::Quad));
-            let count = stages.survivors().len();
+            let count = stages.splat_gaussians().len();
             let quads = stages.quads(count);
             stages.draw(&camera, &clip, &settings.raster(Raster::Tiles));
             if !scene.is_empty() && count > 0 {

@@ -1,15 +1,15 @@
-//! Stage `compact`: the survivors' lists, from the classes that the stages before have found.
+//! Stage `compact`: the splats' lists, from the classes that the stages before have found.
 
 use rara::types::NOT_CUT;
 use rara::{ClipOp, Mode, Raster, Settings};
-use rara_base::limits::SURVIVOR_GROUP_SIZE;
+use rara_base::limits::SPLAT_GROUP_SIZE;
 use rara_reference::{Side, compact};
 
 use crate::classify;
 use crate::frame;
 
 #[test]
-fn survivors_are_in_the_scenes_order() {
+fn splats_are_in_the_scenes_order() {
     frame::for_each_scene(|stages, scene| {
         for (view, mode, op) in [
             (0, Mode::None, ClipOp::And),
@@ -28,8 +28,8 @@ fn survivors_are_in_the_scenes_order() {
             let sides = sides.iter().map(|side| side.unwrap_or(Side::Culled));
             let sides: Vec<_> = sides.collect();
             let kept = compact::compact(&sides);
-            let survivors = stages.survivors();
-            let ours = survivors.iter().map(|&[index, _]| index);
+            let splat_gaussians = stages.splat_gaussians();
+            let ours = splat_gaussians.iter().map(|&[index, _]| index);
             assert!(
                 ours.eq(kept.iter().copied()),
                 "{}, {settings:?}",
@@ -37,7 +37,7 @@ fn survivors_are_in_the_scenes_order() {
             );
             // The cut ones are numbered in the same order.
             let mut cut = Vec::new();
-            for &[index, number] in &survivors {
+            for &[index, number] in &splat_gaussians {
                 if sides[index as usize] == Side::Cutoff {
                     assert_eq!(number as usize, cut.len());
                     cut.push(index);
@@ -59,7 +59,7 @@ fn survivors_are_in_the_scenes_order() {
             ] {
                 let [x, y, z, w] = groups.map(u64::from);
                 assert_eq!((w, z), (count as u64, 1));
-                let size = u64::from(SURVIVOR_GROUP_SIZE);
+                let size = u64::from(SPLAT_GROUP_SIZE);
                 assert!(x * y * size >= w && (w == 0 || (x * y - 1) * size < w));
             }
             assert_eq!(counts.draw, [4, kept.len() as u32, 0, 0]);

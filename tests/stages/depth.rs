@@ -1,4 +1,4 @@
-//! Stage `depth`: how deep each survivor is, on average of what the clip leaves of it.
+//! Stage `depth`: how deep each splat is, on average of what the clip leaves of it.
 
 use rara::gpu::{Bindings, Device, DeviceDesc};
 use rara::types::{FrameCounts, Gaussian, SplatDepth};
@@ -12,7 +12,7 @@ use rara_reference::{Footprint, Real, ViewTransform};
 use crate::frame;
 use crate::layers;
 
-/// The values that the stage has written of each survivor, and the survivor's number in the scene.
+/// The values that the stage has written of each splat, and the splat's number in the scene.
 fn depths<'a>(
     device: &Device,
     renderer: &mut Renderer,
@@ -34,16 +34,16 @@ fn depths<'a>(
     }
     let read = |name| renderer.working_buffer(name).expect(name);
     let counts: FrameCounts = bytemuck::pod_read_unaligned(&read("counts"));
-    let survivors = (counts.visible + counts.cutoff) as usize;
+    let splat_gaussians = (counts.visible + counts.cutoff) as usize;
     let gaussians: Vec<Gaussian> =
         bytemuck::pod_collect_to_vec(&renderer.scene_buffer(&there, "gaussians").expect("them"));
-    let indices: Vec<u32> = bytemuck::pod_collect_to_vec(&read("survivors"));
+    let indices: Vec<u32> = bytemuck::pod_collect_to_vec(&read("splat_gaussians"));
     let number = |index: u32| gaussians[index as usize].scale[3].to_bits() as usize;
     let numbers = indices.into_iter().map(number);
     let depths = read("depths");
     let depths = depths.chunks_exact(size_of::<SplatDepth>());
     let depths = depths.map(bytemuck::pod_read_unaligned);
-    numbers.zip(depths).take(survivors).collect()
+    numbers.zip(depths).take(splat_gaussians).collect()
 }
 
 fn settings() -> Settings {

@@ -77,7 +77,7 @@ impl Stages {
         elements.map(bytemuck::pod_read_unaligned).collect()
     }
 
-    /// True where the kernels are those for CPU drivers.
+    /// True where the pipelines are those for CPU drivers.
     pub fn is_cpus(&self) -> bool {
         self.headless.device().shape() == DeviceShape::Cpu
     }
@@ -86,25 +86,25 @@ impl Stages {
         self.read("counts")[0]
     }
 
-    /// The indices of the survivors, and their numbers among the cut ones.
-    pub fn survivors(&mut self) -> Vec<[u32; 2]> {
+    /// The indices of the splats, and their numbers among the cut ones.
+    pub fn splat_gaussians(&mut self) -> Vec<[u32; 2]> {
         let counts = self.counts();
         let frame: FrameData = self.read("frame")[0];
         let count = (counts.visible + counts.cutoff) as usize;
-        let survivors: Vec<u32> = self.read("survivors");
-        let cuts = &survivors[frame.scene.gaussian_count as usize..];
+        let splat_gaussians: Vec<u32> = self.read("splat_gaussians");
+        let cuts = &splat_gaussians[frame.scene.gaussian_count as usize..];
         // Only frames that may cut any say which are cut.
         let may_cut = frame.region.mode >= MODE_RARA;
         let cut = |i: usize| if may_cut { cuts[i] } else { NOT_CUT };
-        (0..count).map(|i| [survivors[i], cut(i)]).collect()
+        (0..count).map(|i| [splat_gaussians[i], cut(i)]).collect()
     }
 
-    /// The indices of the survivors after a reclipped frame, which are all in view, clipped away or not.
-    pub fn survivors_in_view(&mut self) -> Vec<u32> {
+    /// The indices of the splats after a reclipped frame, which are all in view, clipped away or not.
+    pub fn gaussians_in_view(&mut self) -> Vec<u32> {
         let in_view = self.counts().mesh_groups[3] as usize;
-        let mut survivors = self.read("survivors");
-        survivors.truncate(in_view);
-        survivors
+        let mut splat_gaussians = self.read("splat_gaussians");
+        splat_gaussians.truncate(in_view);
+        splat_gaussians
     }
 
     pub fn splats_in_view(&mut self, count: usize) -> Vec<Splat> {
@@ -117,23 +117,23 @@ impl Stages {
     }
 
     pub fn splats(&mut self) -> Vec<Splat> {
-        let count = self.survivors().len();
+        let count = self.splat_gaussians().len();
         self.splats_in_view(count)
     }
 
-    /// What a frame draws the first so many survivors with, unless tiles surely draw it.
+    /// What a frame draws the first so many splats with, unless tiles surely draw it.
     pub fn quads(&mut self, count: usize) -> Vec<Quad> {
         let mut quads = self.read("quads");
         quads.truncate(count);
         quads
     }
 
-    /// The numbers of the survivors in the scene.
+    /// The numbers of the splats in the scene.
     pub fn numbers_in_view(&mut self, count: usize) -> Vec<u32> {
         let gaussians: Vec<Gaussian> = self.read("gaussians");
-        let survivors: Vec<u32> = self.read("survivors");
+        let splat_gaussians: Vec<u32> = self.read("splat_gaussians");
         let number = |index: &u32| gaussians[*index as usize].scale[3].to_bits();
-        survivors[..count].iter().map(number).collect()
+        splat_gaussians[..count].iter().map(number).collect()
     }
 }
 

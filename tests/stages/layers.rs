@@ -17,13 +17,13 @@ pub fn placements() -> [Placement; 3] {
     ]
 }
 
-/// A frame's survivors: number in the scene, splat, and the whole cutoff record of a cut one.
-fn survivors(stages: &mut Stages, stride: usize) -> Vec<(u32, Splat, Vec<[f32; 4]>)> {
+/// A frame's splats: number in the scene, splat, and the whole cutoff record of a cut one.
+fn frame_splats(stages: &mut Stages, stride: usize) -> Vec<(u32, Splat, Vec<[f32; 4]>)> {
     let records: Vec<[f32; 4]> = stages.read("cut_records");
-    let survivors = stages.survivors();
+    let splat_gaussians = stages.splat_gaussians();
     let splats = stages.splats();
     let numbers = stages.numbers_in_view(splats.len());
-    let both = survivors.iter().zip(numbers.into_iter().zip(splats));
+    let both = splat_gaussians.iter().zip(numbers.into_iter().zip(splats));
     both.map(|([_, cut], (number, splat))| {
         let record = match *cut as usize {
             cut if cut < records.len() => records[cut * stride..][..stride].to_vec(),
@@ -60,7 +60,7 @@ fn each_layers_splats_and_records_are_those_of_the_layer_alone() {
                 .expect("uploads");
             stages.draw(&camera, &clip, &settings);
             let stride = 4 + planes;
-            let together = survivors(&mut stages, stride);
+            let together = frame_splats(&mut stages, stride);
             let mut first = 0;
             let mut from = 0;
             for (part, state) in parts.iter().zip(&states) {
@@ -77,7 +77,7 @@ fn each_layers_splats_and_records_are_those_of_the_layer_alone() {
                     &clip.in_scene(&placement),
                     &settings,
                 );
-                let alone = survivors(&mut stages, stride);
+                let alone = frame_splats(&mut stages, stride);
                 let mut alone = alone.into_iter().filter(|(_, splat, _)| {
                     // The near cut is at a fifth of the scene's units, not of the layer's.
                     unit * splat.curvature_depth[3] >= 0.2
@@ -110,7 +110,7 @@ fn each_layers_splats_and_records_are_those_of_the_layer_alone() {
                 assert!(alone.next().is_none(), "as many survive");
                 first = end;
             }
-            assert_eq!(from, together.len(), "every survivor is a layer's");
+            assert_eq!(from, together.len(), "every splat is a layer's");
         }
     }
     assert!(cut > 500, "{cut} were cut");

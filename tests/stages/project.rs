@@ -1,4 +1,4 @@
-//! Stage `project`: place, shape and colour of each survivor.
+//! Stage `project`: place, shape and colour of each splat.
 
 use glam::{DMat4, Quat, Vec3};
 use rara::{Camera, Clip, Gaussians, Projection, Raster, Settings, ShFormat};
@@ -62,10 +62,10 @@ fn quads() -> Settings {
 
 fn compare(stages: &mut Stages, camera: &Camera, worst: &mut Apart) {
     let view = ViewTransform::<f32>::new(camera);
-    let survivors = stages.survivors();
-    let numbers = stages.numbers_in_view(survivors.len());
+    let splat_gaussians = stages.splat_gaussians();
+    let numbers = stages.numbers_in_view(splat_gaussians.len());
     let splats = stages.splats();
-    for ((splat, number), [index, _]) in splats.iter().zip(numbers).zip(survivors) {
+    for ((splat, number), [index, _]) in splats.iter().zip(numbers).zip(splat_gaussians) {
         let index = index as usize;
         let Some(twin) = project::project(&stages.scene, index, &view, &quads()) else {
             continue; // a tie of stage classify

@@ -1,4 +1,4 @@
-//! Stage `sort`: the survivors' order, from the depths that the stage before has found.
+//! Stage `sort`: the splats' order, from the depths that the stage before has found.
 
 use std::collections::BTreeSet;
 
@@ -79,7 +79,7 @@ fn equal_depths_are_in_the_files_order() {
     }
 }
 
-/// Groups of one depth of every size that kernels tell apart, in one scene: one splat, as many as an invocation, a workgroup and
+/// Groups of one depth of every size that pipelines tell apart, in one scene: one splat, as many as an invocation, a workgroup and
 /// a partition order, and one more of each, and groups that fill several partitions.
 #[test]
 fn groups_of_one_depth_of_every_size_are_in_the_files_order() {
@@ -99,12 +99,12 @@ fn groups_of_one_depth_of_every_size_are_in_the_files_order() {
 /// More groups than a digit has values, each of more splats than a partition holds.
 #[test]
 #[ignore = "a million splats; run it where the sort for GPUs has changed"]
-fn many_crowds_are_in_the_files_order() {
+fn many_large_ties_are_in_the_files_order() {
     let layers: Vec<_> = (0..270 * 4_200).map(|index| index * 7919 % 270).collect();
-    check_depths(&mut Stages::new(), "270 crowds", &layers);
+    check_depths(&mut Stages::new(), "270 large ties", &layers);
 }
 
-/// Kernels that divide the keys into partitions of 4096 have a last one that is full, lacks one key, or holds a single one.
+/// Pipelines that divide the keys into partitions of 4096 have a last one that is full, lacks one key, or holds a single one.
 #[test]
 fn partitions_of_every_length_are_sorted() {
     let mut stages = Stages::new();

@@ -17,7 +17,7 @@ fn moved(clip: &Clip, by: f64) -> Clip {
     )
 }
 
-/// What the rasteriser holds of the first so many survivors, by their numbers in the scene: splats, and quads to draw.
+/// What the rasteriser holds of the first so many splats, by their numbers in the scene: splats, and quads to draw.
 fn held(stages: &mut Stages, count: usize, raster: Raster) -> Vec<(u32, (Splat, Option<Quad>))> {
     let splats = stages.splats_in_view(count);
     let quads: Vec<_> = match raster {
@@ -54,13 +54,13 @@ fn a_moved_clip_changes_what_the_twin_says() {
                 }
                 assert_eq!(swept.skipped.contains(&"project"), by != 0.1, "{by}");
                 // All in view survive; the list has those that the clip changes, and their new side.
-                let survivors = stages.survivors_in_view();
+                let splat_gaussians = stages.gaussians_in_view();
                 let recuts: Vec<[u32; 2]> = stages.read("recuts");
                 let changed = stages.counts().recut_groups[3] as usize;
                 let twin = classify::classify(&stages.scene, &view, &clip, &settings);
                 let mut cuts = 0;
-                for &[survivor, cut] in &recuts[..changed] {
-                    let index = survivors[survivor as usize] as usize;
+                for &[splat_index, cut] in &recuts[..changed] {
+                    let index = splat_gaussians[splat_index as usize] as usize;
                     let ours = match cut {
                         NOT_CUT => Side::Visible,
                         CUT_AWAY => Side::Invisible,
@@ -79,11 +79,11 @@ fn a_moved_clip_changes_what_the_twin_says() {
                 }
                 assert_eq!(cuts, swept.counts.cutoff);
                 // The rasteriser then holds for each what a whole frame computes.
-                let swept_splats = held(stages, survivors.len(), raster);
+                let swept_splats = held(stages, splat_gaussians.len(), raster);
                 let mut whole = std::collections::HashMap::new();
                 let counts = stages.draw(&camera, &clip, &settings).counts;
                 assert_eq!(counts, swept.counts);
-                let drawn = stages.survivors().len();
+                let drawn = stages.splat_gaussians().len();
                 whole.extend(held(stages, drawn, raster));
                 let mut gone = 0;
                 for (number, (mut splat, quad)) in swept_splats {

@@ -1,5 +1,5 @@
 //! How far a frame is from what it cannot do without, each at the best rate that the device shows in the same round:
-//! bytes moved (each survivor's Gaussian read, its splat written and read, the picture written), fragments blended, keys
+//! bytes moved (each splat's Gaussian read, its splat written and read, the picture written), fragments blended, keys
 //! sorted. Nothing else counts as needed: not the arithmetic of a projection, no lists of tiles, no fragment without
 //! effect.
 
@@ -40,11 +40,11 @@ pub(super) fn measure(run: &mut Run<'_>, world: &World, numbers: Measurements) -
     .remove(0);
 
     let frames: Vec<FrameTime> = rounds.iter().map(|round| round.2.clone()).collect();
-    let survivors = f64::from(frames.last().map_or(0, |timed| timed.stats.counts.drawn));
+    let drawn = f64::from(frames.last().map_or(0, |timed| timed.stats.counts.drawn));
     let record = whole.scene_bytes() as f64 / world.scene.len() as f64;
     let pixels = f64::from(camera.width) * f64::from(camera.height);
     let pixel_bytes = 16.0; // of the tiles' picture and of the target
-    let splats = survivors * (record + 2.0 * size_of::<Splat>() as f64);
+    let splats = drawn * (record + 2.0 * size_of::<Splat>() as f64);
     let blended = fragments::count(&world.scene, &camera, &settings) as f64;
     // The faster of the two sorts counts: a bound that the frame itself beats would be none.
     let sorted = |(_, keys, whole): &([f64; 2], FrameTime, FrameTime)| {
@@ -69,11 +69,7 @@ pub(super) fn measure(run: &mut Run<'_>, world: &World, numbers: Measurements) -
             blended,
             rounds.iter().map(|round| round.0[1]).collect(),
         ),
-        (
-            "keys sorted",
-            survivors,
-            rounds.iter().map(sorted).collect(),
-        ),
+        ("keys sorted", drawn, rounds.iter().map(sorted).collect()),
     ];
     let mut bound = vec![0.0; rounds.len()];
     for (what, need, rates) in needs {

@@ -16,7 +16,7 @@ pub(super) fn pairs(plan: &Plan) -> u64 {
     plan.data.room.pair_capacity.into()
 }
 
-/// Words of scratch as buffers of the kernels for CPU drivers, or else for GPUs, where there are tiles.
+/// Words of scratch as buffers of the pipelines for CPU drivers, or else for GPUs, where there are tiles.
 pub(super) fn scratch(plan: &Plan, is_for_cpus: bool, words: u64) -> u64 {
     match (plan.way.shape == DeviceShape::Cpu) == is_for_cpus {
         true => plan.when_tiled(4 * words),

@@ -5,7 +5,7 @@
 use crate::passes::bin::lists::{self, pairs};
 use crate::passes::pipelines::FromPlan;
 use crate::passes::plan::Plan;
-use crate::passes::radix::{self, Kernels, Keys, Pass};
+use crate::passes::radix::{self, Keys, Pass, RadixPipelines};
 use crate::passes::recording::{Groups, Recording, counted};
 use crate::passes::shaders::{
     batch_count, batch_scan, batch_scatter, macro_count, macro_expand, macro_ranges, macro_scan,
@@ -44,7 +44,7 @@ memory! {
     tile_list: |plan| scratch(plan, u64::from(plan.data.tiles.tile_count) + 2);
 }
 
-/// Bytes of so many words where these kernels run.
+/// Bytes of so many words where these pipelines run.
 fn scratch(plan: &Plan, words: u64) -> u64 {
     lists::scratch(plan, false, words)
 }
@@ -127,7 +127,7 @@ pub(super) fn record(recording: &mut Recording<'_, '_>) {
         histogram: &MEMORY.macro_histogram,
     });
     recording.dispatch(buffers, (), pair_partitions);
-    let kernels = Kernels::new(plan, Keys::Pairs);
+    let pipelines = RadixPipelines::new(plan, Keys::Pairs);
     let [columns, rows] = macro_tiles(&plan.data.tiles);
     for number in 0..passes {
         let pair = [number, number + 1].map(|pair| (pair % 2) as usize);
@@ -141,9 +141,9 @@ pub(super) fn record(recording: &mut Recording<'_, '_>) {
             macro_begins: (passes == 1).then_some((&MEMORY.macro_begins, columns * rows)),
         };
         if number > 0 {
-            pass.count(&kernels, recording, pair_partitions);
+            pass.count(&pipelines, recording, pair_partitions);
         }
-        pass.carry(&kernels, recording, pair_partitions);
+        pass.carry(&pipelines, recording, pair_partitions);
     }
     let sorted = (passes % 2) as usize;
     if passes > 1 {

@@ -1,8 +1,8 @@
 //! Stage `bin`: the splats of each tile, by depth.
 //!
-//! It is given the survivors' outlines, as masks or as splats, and their [order](super::sort::order); it leaves the tiles'
+//! It is given the splats' outlines, as masks or as splats, and their [order](super::sort::order); it leaves the tiles'
 //! lists and where they begin, how many pairs of tile and splat there are, and on GPUs lists of the tiles themselves. The plan
-//! says which kernels do it: each set has a file here, shaders and scratch of its own, and may use the buffers that the sort
+//! says which pipelines do it: each set has a file here, shaders and scratch of its own, and may use the buffers that the sort
 //! has left over.
 
 pub(super) mod lists;

@@ -29,7 +29,7 @@ fn rows(plan: &Plan) -> u64 {
     (plan.data.tiles.tile_count / plan.data.tiles.tile_columns).into()
 }
 
-/// Bytes of so many words where these kernels run.
+/// Bytes of so many words where these pipelines run.
 fn scratch(plan: &Plan, words: u64) -> u64 {
     lists::scratch(plan, true, words)
 }

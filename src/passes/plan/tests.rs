@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::*;
-use crate::passes::pipelines::{Kernel, PipelineKey};
+use crate::passes::pipelines::{Pipeline, PipelineKey};
 use crate::passes::shaders::project;
 use crate::passes::splat_colours::SplatColours;
 use crate::passes::weight::Weight;
@@ -44,7 +44,7 @@ fn plan(mode: Mode, planes: usize) -> Plan {
 
 /// The pipeline that projects.
 fn projects_by(plan: &Plan) -> PipelineKey {
-    Kernel::<project::Program>::from_plan(plan).key()
+    Pipeline::<project::Program>::from_plan(plan).key()
 }
 
 #[test]

@@ -20,9 +20,9 @@ memory! {
         DeviceShape::Gpu { .. } => radix::histogram_words(plan.gaussians()),
     };
     /// What the sort for GPUs knows of many splats of one depth; empty for CPU drivers.
-    crowds: |plan| match plan.way.shape {
+    large_ties: |plan| match plan.way.shape {
         DeviceShape::Cpu => 0,
-        DeviceShape::Gpu { .. } => 4 * crowd_words(plan.gaussians()),
+        DeviceShape::Gpu { .. } => 4 * large_tie_words(plan.gaussians()),
     };
 }
 
@@ -35,17 +35,17 @@ fn run_words(runs: u64) -> u64 {
     runs * ((1 << limits::SORT_BITS) + 2)
 }
 
-/// Stretches of so many Gaussians' numbers, as in glsl/crowds.glsl.
+/// Stretches of so many Gaussians' numbers, as in glsl/large_ties.glsl.
 pub(super) fn stretches(gaussians: u64) -> u64 {
     let partitions = gaussians.div_ceil(limits::RADIX_PARTITION.into());
     let of_stretch = partitions.div_ceil(limits::MOST_STRETCHES.into());
     partitions.div_ceil(of_stretch.max(limits::LEAST_STRETCH.into()))
 }
 
-/// Words of the crowds: whether there are any, their places, their counts, and a bit for each number.
-fn crowd_words(gaussians: u64) -> u64 {
+/// Words of the large ties: whether there are any, their places, their counts, and a bit for each number.
+fn large_tie_words(gaussians: u64) -> u64 {
     let tables = stretches(gaussians) + 1;
-    1 + tables * u64::from(limits::MOST_CROWDS) + gaussians.div_ceil(u32::BITS.into())
+    1 + tables * u64::from(limits::MOST_LARGE_TIES) + gaussians.div_ceil(u32::BITS.into())
 }
 
 // FrameCounts has indirect commands for four passes.
@@ -66,7 +66,7 @@ pub(super) fn groups_of_count(pass: u32) -> Groups {
     }
 }
 
-/// The survivors that the sort of a frame leaves, front to back.
+/// The splats that the sort of a frame leaves, front to back.
 pub(in crate::passes) fn order(plan: &Plan) -> &'static Storage {
     ORDER[plan.sorted()]
 }

@@ -1,9 +1,9 @@
-//! Stage `sort`: a stable sort of the survivors by linear view depth, ties by their number in the scene.
+//! Stage `sort`: a stable sort of the splats by linear view depth, ties by their number in the scene.
 //!
-//! It is given as many keys as there are survivors, in `depth_keys`. `order` holds nothing yet:
-//! the survivors are numbered like their keys, from 0. It leaves the sorted keys and their survivors in the pair of `keys`
+//! It is given as many keys as there are splats, in `depth_keys`. `order` holds nothing yet:
+//! the splats are numbered like their keys, from 0. It leaves the sorted keys and their splats in the pair of `keys`
 //! and `order` that [`Plan::sorted`] names, on which all later stages rely, and the others to the stages that follow
-//! ([`spare`]). The plan says which kernels do it: each set has a file here, and shaders of its own.
+//! ([`spare`]). The plan says which pipelines do it: each set has a file here, and shaders of its own.
 
 mod keys;
 mod radix;

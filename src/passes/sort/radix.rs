@@ -1,20 +1,20 @@
 //! A radix sort by partitions of consecutive keys, each owned by a workgroup, as suits graphics processors. Its scratch is
-//! `histogram`, and `crowds` for those of one depth that are more than a workgroup orders.
+//! `histogram`, and `large_ties` for those of one depth that are more than a workgroup orders.
 
-use crate::passes::radix::{Kernels, Keys, Pass};
+use crate::passes::radix::{Keys, Pass, RadixPipelines};
 use crate::passes::recording::{Groups, Recording, counted};
-use crate::passes::shaders::{radix_crowds, radix_ties};
+use crate::passes::shaders::{radix_large_ties, radix_ties};
 use crate::passes::shared::{self, SCENE};
 use crate::passes::sort::keys::{KEYS, MEMORY, ORDER, groups_of_count, groups_of_pass, stretches};
 use crate::passes::storage::buffers;
 use crate::passes::{compact, project};
 
-/// Sorts as the other kernels do (`runs.rs`), pass by pass, and leaves out the same passes.
+/// Sorts as the other pipelines do (`runs.rs`), pass by pass, and leaves out the same passes.
 pub(super) fn record(recording: &mut Recording<'_, '_>) {
     let plan = recording.plan;
     let depth_keys = &project::MEMORY.depth_keys;
     let passes = plan.way.sort_passes;
-    let kernels = Kernels::new(plan, Keys::Survivors);
+    let pipelines = RadixPipelines::new(plan, Keys::Splats);
     for number in 0..passes {
         let pair = [number, number + 1].map(|pair| (pair % 2) as usize);
         let pass = Pass {
@@ -26,30 +26,30 @@ pub(super) fn record(recording: &mut Recording<'_, '_>) {
             histogram: &MEMORY.histogram,
             macro_begins: None,
         };
-        pass.count(&kernels, recording, groups_of_count(number));
-        pass.carry(&kernels, recording, groups_of_pass(number));
+        pass.count(&pipelines, recording, groups_of_count(number));
+        pass.carry(&pipelines, recording, groups_of_pass(number));
     }
     if plan.reordered {
         let sorted = plan.sorted();
-        recording.fill(&MEMORY.crowds, 0);
+        recording.fill(&MEMORY.large_ties, 0);
         let buffers = buffers!(radix_ties {
             shared::MEMORY => [frame, counts],
             SCENE => [gaussians],
-            compact::MEMORY => [survivors],
-            MEMORY => [crowds];
+            compact::MEMORY => [splat_gaussians],
+            MEMORY => [large_ties];
             keys: KEYS[sorted],
             order: ORDER[sorted],
             scratch: ORDER[sorted ^ 1],
             numbers: KEYS[sorted ^ 1],
             // Whose keys have been carried away.
-            crowd_members: depth_keys,
+            tie_members: depth_keys,
         });
         recording.dispatch(buffers, (), counted!(sort_groups));
-        let buffers = buffers!(radix_crowds {
+        let buffers = buffers!(radix_large_ties {
             shared::MEMORY => [frame, counts],
-            MEMORY => [crowds];
+            MEMORY => [large_ties];
             order: ORDER[sorted],
-            crowd_members: depth_keys,
+            tie_members: depth_keys,
         });
         let stretches = stretches(plan.gaussians()) as u32;
         recording.dispatch(buffers, (), Groups::Count(stretches));

@@ -8,7 +8,7 @@ use crate::passes::sort::keys::{KEYS, MEMORY, ORDER, groups_of_count, groups_of_
 use crate::passes::storage::buffers;
 use crate::passes::{compact, project};
 
-/// Sorts the survivors by their depths, and those of one depth by their number in the scene. Of the passes that the scene's
+/// Sorts the splats by their depths, and those of one depth by their number in the scene. Of the passes that the scene's
 /// bounds ask for, the device skips the first ones, as many as there are leading digits in which the keys agree (sort.glsl).
 pub(super) fn record(recording: &mut Recording<'_, '_>) {
     let depth_keys = &project::MEMORY.depth_keys;
@@ -45,7 +45,7 @@ pub(super) fn record(recording: &mut Recording<'_, '_>) {
         let buffers = buffers!(sort_ties {
             shared::MEMORY => [frame, counts],
             SCENE => [gaussians],
-            compact::MEMORY => [survivors],
+            compact::MEMORY => [splat_gaussians],
             MEMORY => [histogram];
             keys: KEYS[sorted],
             order: ORDER[sorted],

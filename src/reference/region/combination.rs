@@ -61,7 +61,7 @@ impl<T: Real> Stretch<T> {
 impl<T: Real> Combination<T> {
     fn answer(&self, kept: &dyn Fn(usize) -> bool) -> bool {
         let answers = self.0.iter().enumerate();
-        let answers = answers.map(|(i, (_, joins))| (kept(i), joins.iter().copied()));
+        let answers = answers.map(|(i, (_, operators))| (kept(i), operators.iter().copied()));
         answer(answers, true, |op, a, b| match op {
             ClipOp::And => a && b,
             ClipOp::Or => a || b,

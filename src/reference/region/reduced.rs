@@ -14,7 +14,7 @@ use rara_scene::settings::Settings;
 pub enum RegionRest<T> {
     /// All or nothing is kept.
     Decided(bool),
-    /// The surfaces that cut the Gaussian. After each, its joins replace the two answers on top of a stack.
+    /// The surfaces that cut the Gaussian. After each, its operators replace the two answers on top of a stack.
     Cut(Vec<(UnitSurface<T>, Vec<ClipOp>)>),
 }
 
@@ -40,10 +40,10 @@ impl<T: Real> RegionRest<T> {
         let Self::Cut(surfaces) = self else {
             return None;
         };
-        let mut joins = surfaces.iter().flat_map(|(_, joins)| joins);
-        let op = joins.next().copied().unwrap_or_default();
+        let mut operators = surfaces.iter().flat_map(|(_, operators)| operators);
+        let op = operators.next().copied().unwrap_or_default();
         let is_flat = surfaces.iter().all(|(surface, _)| surface.is_flat());
-        (is_flat && joins.all(|other| *other == op)).then_some(op)
+        (is_flat && operators.all(|other| *other == op)).then_some(op)
     }
 }
 
@@ -90,7 +90,7 @@ pub(crate) fn reduced<T: Real>(
             Side::Cutoff => RegionRest::Decided(surface.half_space.offset >= T::zero()),
             side => RegionRest::Decided(side == Side::Visible),
         };
-        (part, step.joins)
+        (part, step.operators)
     });
     answer(answers, RegionRest::Decided(true), |op, a, b| a.join(op, b))
 }

@@ -4,14 +4,14 @@ use std::cmp::Ordering;
 
 use super::{Clip, ClipOp, Surface};
 
-/// A surface of the list. Its answer goes onto the stack; after that each of `joins` replaces the two answers on top by what
+/// A surface of the list. Its answer goes onto the stack; after that each of `operators` replaces the two answers on top by what
 /// they make together.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Step {
     /// The surface that is answered.
     pub surface: Surface,
     /// The operations that then join the last two answers, in order.
-    pub joins: Vec<ClipOp>,
+    pub operators: Vec<ClipOp>,
 }
 
 /// The region as steps. There are no repetitions within a list, since cutting twice is cutting once, and the order is the
@@ -42,7 +42,7 @@ fn branch(clip: &Clip) -> Branch {
     branches.extend(surfaces.into_iter().map(|surface| Branch {
         steps: vec![Step {
             surface,
-            joins: Vec::new(),
+            operators: Vec::new(),
         }],
         depth: 1,
     }));
@@ -57,7 +57,7 @@ fn branch(clip: &Clip) -> Branch {
         joined.depth = joined.depth.max(branch.depth + 1);
         joined.steps.extend(branch.steps);
         if let Some(last) = joined.steps.last_mut() {
-            last.joins.push(clip.op);
+            last.operators.push(clip.op);
         }
     }
     joined
@@ -70,9 +70,9 @@ pub fn answer<A>(
     join: impl Fn(ClipOp, A, A) -> A,
 ) -> A {
     let mut stack = Vec::new();
-    for (answer, joins) in steps {
+    for (answer, operators) in steps {
         stack.push(answer);
-        for op in joins {
+        for op in operators {
             if let (Some(top), Some(below)) = (stack.pop(), stack.pop()) {
                 stack.push(join(op, below, top));
             }
@@ -108,7 +108,7 @@ mod tests {
                 let answers = steps.iter().map(|step| {
                     (
                         step.surface.distance(point) >= 0.0,
-                        step.joins.iter().copied(),
+                        step.operators.iter().copied(),
                     )
                 });
                 let kept = answer(answers, true, |op, a, b| match op {

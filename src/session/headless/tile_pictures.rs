@@ -216,7 +216,7 @@ fn frames_whose_tiles_have_no_room_come_in_between() {
 fn what_a_gpu_leaves_is_copied_when_it_is_wanted() {
     let mut pair = Pair::new(Some(DeviceShape::Gpu { subgroup: 0 }));
     for format in FORMATS {
-        // How the picture leaves the tiles has nothing to do with what they weigh, whose kernels take a CPU driver a minute
+        // How the picture leaves the tiles has nothing to do with what they weigh, whose pipelines take a CPU driver a minute
         // to compile.
         let settings = tiles(format).mode(Mode::Hard);
         pair.leave(SIZE, 0.0, &settings);

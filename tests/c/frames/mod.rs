@@ -64,9 +64,9 @@ fn with_saved(
     });
 }
 
-/// A host asks for the kernels of a kind of machine, which are here those for GPUs without subgroup operations.
+/// A host asks for the pipelines of a kind of machine, which are here those for GPUs without subgroup operations.
 #[test]
-fn kernels_are_those_that_the_host_asks_for() {
+fn pipelines_are_those_that_the_host_asks_for() {
     let folder = Folder::new("c-frames-shape");
     let (path, scene) = saved(&folder, Kind::General, 3_000);
     with_host(true, |host, usual| {

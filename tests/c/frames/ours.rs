@@ -21,7 +21,7 @@ impl Ours {
         unsafe { Self::shaped(entry, host, path, RARA_SHAPE_AUTO) }
     }
 
-    /// The same with kernels for a kind of machine.
+    /// The same with pipelines for a kind of machine.
     ///
     /// # Safety
     /// As for `new`.

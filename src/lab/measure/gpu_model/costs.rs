@@ -64,15 +64,15 @@ const BOUNDS: u64 = size_of::<types::Block>() as u64;
 const SPLAT: u64 = 12 * WORD;
 /// The curvature of a splat's weight.
 const CURVATURE: u64 = 4 * WORD;
-/// A survivor: its Gaussian; where the clip cuts any, its place among those that are cut is a word more.
-const SURVIVOR: u64 = WORD;
+/// A splat: its Gaussian; where the clip cuts any, its place among those that are cut is a word more.
+const SPLAT_GAUSSIAN: u64 = WORD;
 /// A splat's mask of tiles.
 const TILE_MASK: u64 = 4 * WORD;
 const BLOCK: u64 = limits::BLOCK_SIZE as u64 * GAUSSIAN;
 /// The two masks of a block, a bit a Gaussian in each.
 const MASKS: u64 = 2 * limits::BLOCK_SIZE as u64 / 8;
 const TOTALS: u64 = 4 * WORD;
-/// A change of a reclipped frame: the survivor, and its place among those that are cut.
+/// A change of a reclipped frame: the splat, and its place among those that are cut.
 const CHANGE: u64 = 2 * WORD;
 /// The words that a reclipped frame keeps of a block.
 const KEPT: u64 = limits::RECLIP_WORDS as u64 * WORD;
@@ -150,14 +150,14 @@ pub static COSTS: [Cost; 33] = [
         |n| n.blocks * (WORD + TOTALS + 2 * WORD + WORD),
     ),
     // The number of its group's block, the block, its layer, its side, its Gaussian's bits in the two masks; and the words of
-    // each mask. It writes the survivors, and the numbers of those that are cut.
+    // each mask. It writes the splats, and the numbers of those that are cut.
     Cost::new(
         "compact",
         |n| n.kept_blocks * GAUSSIANS,
         |n| 2 + n.layer() + 3 + 2 * u64::from(limits::BLOCK_SIZE / u32::BITS),
         |n| {
             let block = 4 * WORD + MASKS;
-            n.kept_blocks * block + n.survivors * SURVIVOR + n.cuts() + n.cut * WORD
+            n.kept_blocks * block + n.splats * SPLAT_GAUSSIAN + n.cuts() + n.cut * WORD
         },
     ),
     // How many there are, its Gaussian's number, the layer; the Gaussian meanwhile. It writes the record.
@@ -169,19 +169,19 @@ pub static COSTS: [Cost; 33] = [
     ),
     // How many there are, its Gaussian's number, the layer; the Gaussian meanwhile. Then the cutoff record's header and the
     // rest of it, the colour's constant, its units and those of three degrees; the record once more for the tiles.
-    // It reads the survivor, the Gaussian, its colour and the record, and writes the splat, its depth, its rectangle of tiles and
+    // It reads the splat, the Gaussian, its colour and the record, and writes the splat, its depth, its rectangle of tiles and
     // its key, the curvatures of cut splats, and the masks of those that need one, which have a pair each at least; quads are left out, which frames of
     // tiles do without.
     Cost::new(
         "project",
-        |n| n.survivors,
+        |n| n.splats,
         |n| 2 + n.layer() + 2 + 5 + 2,
         |n| {
-            let read = SURVIVOR + GAUSSIAN + n.sh_bytes;
+            let read = SPLAT_GAUSSIAN + GAUSSIAN + n.sh_bytes;
             let written = SPLAT + 3 * WORD;
             let masks = n.masked_pairs * gathered(TILE_MASK);
             let cut = n.record_bytes + gathered(CURVATURE);
-            n.survivors * (read + written) + n.cuts() + masks + n.cut * cut
+            n.splats * (read + written) + n.cuts() + masks + n.cut * cut
         },
     ),
     // How many keys there are; then its own. It reads the keys, and writes the partitions' counts.
@@ -189,7 +189,7 @@ pub static COSTS: [Cost; 33] = [
         "radix_count",
         |n| n.partitions() * GROUP,
         |_| 1 + KEYS,
-        |n| n.survivors * WORD + n.histogram(),
+        |n| n.splats * WORD + n.histogram(),
     )
     .turning(|_| KEYS as f64 / 8.0),
     // The partitions' least and greatest keys, which decide about the passes; then their counts of the digit, which it reads,
@@ -205,7 +205,7 @@ pub static COSTS: [Cost; 33] = [
     )
     .turning(|n| scan_turns(n.partitions()) as f64 / 8.0),
     // How many keys there are, the digits' totals, its own keys, the partition's counts; then the keys once more.
-    // It reads and writes the keys and the survivors' numbers, which before the first of the passes nobody has written, and reads
+    // It reads and writes the keys and the splats' numbers, which before the first of the passes nobody has written, and reads
     // the counts.
     Cost::new(
         "radix_scatter",
@@ -213,11 +213,11 @@ pub static COSTS: [Cost; 33] = [
         |_| 4 + KEYS,
         |n| {
             let all = 4 * n.sort_passes.max(1) - 1;
-            n.survivors * all * WORD / n.sort_passes.max(1) + n.histogram()
+            n.splats * all * WORD / n.sort_passes.max(1) + n.histogram()
         },
     ),
     // How many keys there are, those half a partition away, its own and those beside them; then those of one depth. It reads the
-    // keys; for those of one depth it reads and writes the survivors, for each of four digits where there are many, and looks up
+    // keys; for those of one depth it reads and writes the splats, for each of four digits where there are many, and looks up
     // their numbers. Nearly all turns are of splats of one depth: the compiler takes three loops inside each other for granted
     // where a frame's few have one or two turns. What is left is straight code, a hundredth of that estimate.
     Cost::new(
@@ -226,26 +226,32 @@ pub static COSTS: [Cost; 33] = [
         |n| 3 + most_of_ties(n),
         |n| {
             let number = gathered(WORD) + gathered(GAUSSIAN);
-            n.survivors * WORD + n.tied * (number + 4 * 4 * WORD)
+            n.splats * WORD + n.tied * (number + 4 * 4 * WORD)
         },
     )
     .turning(|_| 0.01),
-    // Whether there are crowds; how many the stretch has of each, where the crowd begins and the counts of the stretches before;
-    // then, for each of its partitions, who stands for a number and of which crowd it is one. Of its numbers it reads the bits,
-    // and of those of a crowd the rest.
+    // Whether there are large ties; how many the stretch has of each, where the tie begins and the counts of the stretches before;
+    // then, for each of its partitions, who stands for a number and of which tie it is one. Of its numbers it reads the bits,
+    // and of those of a tie the rest.
     Cost::new(
-        "radix_crowds",
+        "radix_large_ties",
         |n| n.stretches() * GROUP,
-        |n| match n.tied > n.crowd_size() {
+        |n| match n.tied > n.least_large_tie() {
             false => 1,
             true => 3 + n.stretches().div_ceil(8) + 3 * n.partitions().div_ceil(n.stretches()),
         },
-        |n| match n.tied > n.crowd_size() {
+        |n| match n.tied > n.least_large_tie() {
             false => 0,
-            true => n.survivors / 8 + n.tied * (2 * gathered(WORD) + WORD),
+            true => n.splats / 8 + n.tied * (2 * gathered(WORD) + WORD),
         },
     )
-    .turning(|n| if n.tied > n.crowd_size() { 1.0 } else { 0.0 }),
+    .turning(|n| {
+        if n.tied > n.least_large_tie() {
+            1.0
+        } else {
+            0.0
+        }
+    }),
     // How many splats there are; then its own and their rectangles. It writes these in the order of depth, and how many pairs
     // the chunks have.
     Cost::new(
@@ -254,7 +260,7 @@ pub static COSTS: [Cost; 33] = [
         |_| 3,
         |n| {
             let splat = 2 * WORD + gathered(WORD);
-            n.survivors * splat + n.partitions() * (1 + CHUNKS) * WORD
+            n.splats * splat + n.partitions() * (1 + CHUNKS) * WORD
         },
     ),
     // The sums of all partitions; then those of its own chunks, of which it writes where they begin.
@@ -273,10 +279,10 @@ pub static COSTS: [Cost; 33] = [
             let chunks = n.partitions() * CHUNKS;
             2 + u64::from(chunks.next_power_of_two().ilog2()) + 2 * expand_rounds(n)
         },
-        |n| (n.survivors * 2 + n.macro_pairs * 2) * WORD + n.pair_histogram(),
+        |n| (n.splats * 2 + n.macro_pairs * 2) * WORD + n.pair_histogram(),
     )
     .turning(|n| expand_rounds(n) as f64 / 8.0),
-    // These are as in the sort of the survivors.
+    // These are as in the sort of the splats.
     Cost::new(
         "pair_radix_count",
         |n| n.pair_partitions() * GROUP,
@@ -375,7 +381,7 @@ pub static COSTS: [Cost; 33] = [
         |n| n.blocks * (WORD + TOTALS + 2 * WORD),
     ),
     // The number of its group's block, the block, whether its Gaussian changes, its places; and the words of the masks. It
-    // writes which survivors change, and the numbers of those that are cut.
+    // writes which splats change, and the numbers of those that are cut.
     Cost::new(
         "reclip_compact",
         |n| n.clip_blocks * GAUSSIANS,
@@ -385,16 +391,16 @@ pub static COSTS: [Cost; 33] = [
             n.clip_blocks * block + n.changed * CHANGE + n.cut * WORD
         },
     ),
-    // How many there are, which survivor, which Gaussian, its layer, the cutoff record, the mask and the splat, most of which
+    // How many there are, which splat, which Gaussian, its layer, the cutoff record, the mask and the splat, most of which
     // it writes.
     Cost::new(
         "recut",
         |n| n.changed,
         |n| 3 + n.layer() + 2 + 2,
         |n| {
-            let survivor = gathered(SURVIVOR) + gathered(GAUSSIAN);
+            let gaussian = gathered(SPLAT_GAUSSIAN) + gathered(GAUSSIAN);
             let splat = gathered(TILE_MASK) + SPLAT + gathered(CURVATURE);
-            n.changed * (CHANGE + survivor + n.record_bytes + splat)
+            n.changed * (CHANGE + gaussian + n.record_bytes + splat)
         },
     ),
     Cost::new(
@@ -413,10 +419,10 @@ pub static COSTS: [Cost; 33] = [
     .turning(splats_of_tile),
     Cost::new(
         "depth",
-        |n| n.survivors,
+        |n| n.splats,
         |n| 2 + n.layer() + n.asked_surfaces(),
-        // It reads the survivor and the Gaussian, and writes the depth.
-        |n| n.survivors * (SURVIVOR + GAUSSIAN + size_of::<types::SplatDepth>() as u64),
+        // It reads the splat and the Gaussian, and writes the depth.
+        |n| n.splats * (SPLAT_GAUSSIAN + GAUSSIAN + size_of::<types::SplatDepth>() as u64),
     ),
 ];
 
@@ -425,12 +431,12 @@ fn scan_turns(partitions: u64) -> u64 {
     partitions.div_ceil((limits::RADIX_GROUP_SIZE * limits::RADIX_SCAN_COUNTS).into())
 }
 
-/// The longest chain of loads that puts survivors of one depth into order, where as many have it as in the frame, or fewer.
+/// The longest chain of loads that puts splats of one depth into order, where as many have it as in the frame, or fewer.
 fn most_of_ties(n: &FrameNumbers) -> u64 {
-    let search = u64::from(n.survivors.max(1).ilog2()) + 1;
-    // A survivor, its Gaussian and the number of that.
+    let search = u64::from(n.splats.max(1).ilog2()) + 1;
+    // A splat, its Gaussian and the number of that.
     let number = 3;
-    let together = n.tied.min(n.crowd_size());
+    let together = n.tied.min(n.least_large_tie());
     let alone = together.min(KEYS).div_ceil(4) * (1 + number + 1);
     if together <= KEYS {
         return alone;
@@ -439,8 +445,8 @@ fn most_of_ties(n: &FrameNumbers) -> u64 {
         return alone + search + number;
     }
     let turns = together.div_ceil(limits::RADIX_PARTITION.into());
-    let digits = u64::from(n.survivors.max(1).ilog2() / limits::SORT_BITS + 1);
-    // The numbers; for each digit a survivor and its number to count and to sort it, and the survivor to carry it; the copy back.
+    let digits = u64::from(n.splats.max(1).ilog2() / limits::SORT_BITS + 1);
+    // The numbers; for each digit a splat and its number to count and to sort it, and the splat to carry it; the copy back.
     let sorted = search + turns * (number + digits * 5 + 1);
     alone.max(sorted)
 }
@@ -448,7 +454,7 @@ fn most_of_ties(n: &FrameNumbers) -> u64 {
 /// The rounds in which a partition of the pairs finds its splats, 2048 in each, from the beginning of a chunk on; as many
 /// splats as there are where all have as many pairs.
 fn expand_rounds(n: &FrameNumbers) -> u64 {
-    let splats = u64::from(limits::RADIX_PARTITION) * n.survivors / n.macro_pairs.max(1);
+    let splats = u64::from(limits::RADIX_PARTITION) * n.splats / n.macro_pairs.max(1);
     (splats + GROUP).div_ceil(2048)
 }
 
@@ -492,7 +498,7 @@ fn bytes_of_tiles(n: &FrameNumbers, tiles: u64) -> u64 {
 /// splats and what else their side of the tile takes, and for each splat that is weighed its record's header and its planes.
 fn loads_of_tile(n: &FrameNumbers) -> u64 {
     let splats = n.loaded.div_ceil(n.filled().max(1));
-    let weighed = splats * n.cut / n.survivors.max(1);
+    let weighed = splats * n.cut / n.splats.max(1);
     3 + 3 * splats.div_ceil(TILE) + 2 * weighed
 }
 

@@ -1,4 +1,4 @@
-//! What was counted for the model: the numbers and dispatches of frames, and the compiler's estimates of their kernels. The
+//! What was counted for the model: the numbers and dispatches of frames, and the compiler's estimates of their pipelines. The
 //! files are written by `tests/gpu_cost/model.rs`.
 
 use glam::DVec3;
@@ -12,8 +12,8 @@ use super::numbers::FrameNumbers;
 
 /// The file of the frames, from the repository's root.
 pub const FRAMES_FILE: &str = "src/lab/measure/gpu_model/frames.json";
-/// The file of the kernels, from the repository's root.
-pub const KERNELS_FILE: &str = "src/lab/measure/gpu_model/kernels.json";
+/// The file of the pipelines, from the repository's root.
+pub const PIPELINES_FILE: &str = "src/lab/measure/gpu_model/pipelines.json";
 
 pub const SIZE: (u32, u32) = (1920, 1080);
 
@@ -58,9 +58,9 @@ pub fn clip(is_cut: bool) -> Result<Clip> {
 
 /// The estimates of RADV's compiler, for 64 invocations on a SIMD of 32 lanes of a Navi 31.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Kernel {
+pub struct PipelineEstimate {
     pub pass: String,
-    /// True of the kernel in frames that are cut.
+    /// True of the pipeline in frames that are cut.
     pub is_cut: bool,
     /// Cycles from its beginning to its end.
     pub latency: u64,
@@ -76,12 +76,12 @@ pub fn frames() -> Vec<ModelFrame> {
     parse(include_str!("frames.json"))
 }
 
-/// The kernels of these frames.
+/// The pipelines of these frames.
 ///
 /// # Panics
 /// If the file is not as it is written.
-pub fn kernels() -> Vec<Kernel> {
-    parse(include_str!("kernels.json"))
+pub fn pipelines() -> Vec<PipelineEstimate> {
+    parse(include_str!("pipelines.json"))
 }
 
 /// Reads what [`text`] has written.
@@ -92,7 +92,7 @@ pub fn parse<T: DeserializeOwned>(text: &str) -> Vec<T> {
     serde_json::from_str(text).expect("what the test has written")
 }
 
-/// Frames or kernels as their files have them.
+/// Frames or pipelines as their files have them.
 pub fn text(all: &[impl Serialize]) -> String {
     serde_json::to_string_pretty(all).expect("numbers and names") + "\n"
 }

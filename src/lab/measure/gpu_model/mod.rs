@@ -11,8 +11,8 @@ mod tables;
 
 pub use costs::{COSTS, Cost};
 pub use counted::{
-    FRAMES_FILE, KERNELS_FILE, Kernel, ModelFrame, SIZE, camera, clip, frames, kernels, parse,
-    scene, text,
+    FRAMES_FILE, ModelFrame, PIPELINES_FILE, PipelineEstimate, SIZE, camera, clip, frames, parse,
+    pipelines, scene, text,
 };
 pub use numbers::FrameNumbers;
 pub use tables::{rows, tables};
@@ -111,20 +111,20 @@ pub fn named(device: &str) -> Option<&'static Gpu> {
 /// The passes of a frame on a GPU, in the order in which they first occur in each stage.
 ///
 /// # Panics
-/// If the frame has a pass without cost or kernel, which a test excludes for those of [`frames`].
+/// If the frame has a pass without cost or pipeline, which a test excludes for those of [`frames`].
 pub fn predict(gpu: &Gpu, frame: &ModelFrame) -> Vec<PassPrediction> {
-    let kernels = kernels();
+    let pipelines = pipelines();
     let mut all: Vec<PassPrediction> = Vec::new();
     let mut stage = "";
     for name in &frame.dispatches {
         let cost = COSTS.iter().find(|cost| cost.name == *name);
         let cost = cost.unwrap_or_else(|| panic!("{name} has no cost"));
-        let kernel = kernels
+        let pipeline = pipelines
             .iter()
-            .find(|kernel| kernel.pass == *name && kernel.is_cut == frame.is_cut);
-        let kernel = kernel.unwrap_or_else(|| panic!("{name} has no kernel"));
+            .find(|pipeline| pipeline.pass == *name && pipeline.is_cut == frame.is_cut);
+        let pipeline = pipeline.unwrap_or_else(|| panic!("{name} has no pipeline"));
         stage = stage_of(cost.name, stage);
-        let once = dispatch(gpu, cost, kernel, &frame.numbers, stage);
+        let once = dispatch(gpu, cost, pipeline, &frame.numbers, stage);
         match all
             .iter_mut()
             .find(|p| (p.stage, p.pass) == (once.stage, once.pass))
@@ -163,7 +163,7 @@ impl PassPrediction {
 fn dispatch(
     gpu: &Gpu,
     cost: &Cost,
-    kernel: &Kernel,
+    pipeline: &PipelineEstimate,
     numbers: &FrameNumbers,
     stage: &'static str,
 ) -> PassPrediction {
@@ -171,10 +171,10 @@ fn dispatch(
     let bytes = (cost.bytes)(numbers);
     let turns = (cost.turns)(numbers);
     let memory = bytes as f64 / (gpu.bandwidth * 1e9 * REACHED_BANDWIDTH) * 1e3;
-    let cycles = invocations as f64 / INVOCATIONS_OF_ESTIMATE * kernel.cycles as f64 * turns;
+    let cycles = invocations as f64 / INVOCATIONS_OF_ESTIMATE * pipeline.cycles as f64 * turns;
     let instructions = cycles / (gpu.lanes / LANES_OF_ESTIMATE) / (gpu.clock * 1e9) * 1e3;
     let loads = (cost.loads)(numbers) as f64 * gpu.latency / 1e6;
-    let alone = kernel.latency as f64 * turns / (gpu.clock * 1e9) * 1e3;
+    let alone = pipeline.latency as f64 * turns / (gpu.clock * 1e9) * 1e3;
     let chain = loads.max(alone);
     PassPrediction {
         stage,

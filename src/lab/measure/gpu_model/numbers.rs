@@ -17,14 +17,14 @@ pub struct FrameNumbers {
     pub layers: u64,
     pub surfaces: u64,
     /// Gaussians that are drawn.
-    pub survivors: u64,
-    /// Survivors that are cut.
+    pub splats: u64,
+    /// Splats that are cut.
     pub cut: u64,
-    /// Survivors that a moved clip changes.
+    /// Splats that a moved clip changes.
     pub changed: u64,
-    /// Passes of the survivors' sort that are not skipped.
+    /// Passes of the splats' sort that are not skipped.
     pub sort_passes: u64,
-    /// The most survivors that have one depth.
+    /// The most splats that have one depth.
     pub tied: u64,
     pub tile_columns: u64,
     pub tile_rows: u64,
@@ -64,9 +64,9 @@ impl FrameNumbers {
         1 + (self.blocks.div_ceil(8 * u64::from(limits::BLOCK_SIZE)) + 2) * loads
     }
 
-    /// Partitions of the survivors' sort.
+    /// Partitions of the splats' sort.
     pub(super) fn partitions(&self) -> u64 {
-        self.survivors.div_ceil(limits::RADIX_PARTITION.into())
+        self.splats.div_ceil(limits::RADIX_PARTITION.into())
     }
 
     /// Partitions of the sort of the pairs of macro-tile and splat.
@@ -74,21 +74,21 @@ impl FrameNumbers {
         self.macro_pairs.div_ceil(limits::RADIX_PARTITION.into())
     }
 
-    /// Parts of the scene's numbers that the sort collects those of one depth from, if there are as many numbers as survivors
-    /// (glsl/crowds.glsl).
+    /// Parts of the scene's numbers that the sort collects those of one depth from, if there are as many numbers as splats
+    /// (glsl/large_ties.glsl).
     pub(super) fn stretches(&self) -> u64 {
         let partitions = self.partitions();
         let of_stretch = partitions.div_ceil(limits::MOST_STRETCHES.into());
         partitions.div_ceil(of_stretch.max(limits::LEAST_STRETCH.into()))
     }
 
-    /// How many survivors of one depth are no crowd yet, as in glsl/crowds.glsl.
-    pub(super) fn crowd_size(&self) -> u64 {
-        let size = self.survivors.div_ceil(limits::MOST_CROWDS.into());
+    /// How many splats of one depth are no large tie yet, as in glsl/large_ties.glsl.
+    pub(super) fn least_large_tie(&self) -> u64 {
+        let size = self.splats.div_ceil(limits::MOST_LARGE_TIES.into());
         size.max(limits::RADIX_PARTITION.into())
     }
 
-    /// Bytes of the histogram of the survivors' sort.
+    /// Bytes of the histogram of the splats' sort.
     pub(super) fn histogram(&self) -> u64 {
         (self.partitions() << limits::SORT_BITS) * WORD
     }
@@ -98,9 +98,9 @@ impl FrameNumbers {
         (self.pair_partitions() << limits::SORT_BITS) * WORD
     }
 
-    /// Bytes of the survivors' places among those that are cut, which nobody reads where none can be.
+    /// Bytes of the splats' places among those that are cut, which nobody reads where none can be.
     pub(super) fn cuts(&self) -> u64 {
-        u64::from(self.record_bytes > 0) * self.survivors * WORD
+        u64::from(self.record_bytes > 0) * self.splats * WORD
     }
 
     fn macro_columns(&self) -> u64 {

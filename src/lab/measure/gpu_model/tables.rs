@@ -6,7 +6,7 @@ use crate::table::{Cell, Table};
 /// The GPUs and, for each frame, what its passes are predicted to take on them.
 pub fn tables(frames: &[ModelFrame]) -> Vec<Table> {
     let note = format!(
-        "These are predictions, not measurements: generated scenes at {}x{}, drawn by tiles with the kernels for GPUs, packed \
+        "These are predictions, not measurements: generated scenes at {}x{}, drawn by tiles with the pipelines for GPUs, packed \
          spherical harmonics of degree 3. Behind each time stands what the pass waits for: memory, instructions, its longest \
          chain, or the gap between passes ({GAP} us each). Memory is taken to reach {REACHED_BANDWIDTH} of its bandwidth.",
         SIZE.0, SIZE.1

@@ -26,9 +26,9 @@ fn a_pass_takes_its_longest_time_and_its_gaps() {
             let least = p.memory.max(p.instructions).max(p.chain);
             let gaps = f64::from(p.dispatches) * GAP / 1e3;
             assert!((p.ms - least - gaps).abs() < 1e-9, "{p:?}");
-            // In these frames no depth has a crowd, so that its pass looks whether there are any and ends.
+            // In these frames no depth has a tie, so that its pass looks whether there are any and ends.
             let works = p.memory > 0.0 && p.instructions > 0.0;
-            let is_idle = p.pass == "radix_crowds" && p.bytes == 0;
+            let is_idle = p.pass == "radix_large_ties" && p.bytes == 0;
             assert!(p.chain > 0.0 && (works || is_idle), "{p:?}");
         }
     }

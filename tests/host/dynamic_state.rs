@@ -2,10 +2,11 @@
 //! have it: splats lie upright between its meshes, under its scissor, and it sets its own state again after them.
 
 use std::cell::{OnceCell, RefCell};
+use std::io::Cursor;
 
 use crate::canvas::{Canvas, CanvasDesc, Frame, with_host};
 use crate::common;
-use rara::ash::{Device, vk};
+use rara::ash::{Device, util, vk};
 use rara::scene::{Kind, generate};
 use rara::{ClipOp, Renderer, RendererDesc, SceneBuffers, Settings, ShFormat};
 
@@ -16,20 +17,8 @@ const UPPER_LEFT: [f32; 2] = [-0.4, 0.3];
 const LOWER_RIGHT: [f32; 2] = [0.3, -0.2];
 
 /// The shaders of the C++ host's mesh, an octahedron, as glslang has written them.
-const SHADERS: &str = include_str!("../../tools/examples/mesh.h");
-
-/// The words of a shader.
-fn words(name: &str) -> Vec<u32> {
-    let (_, rest) = SHADERS.split_once(name).expect("a shader of this name");
-    let (_, rest) = rest.split_once('{').expect("its words");
-    let (words, _) = rest.split_once('}').expect("an end");
-    let words = words.split(',').map(str::trim).filter(|w| !w.is_empty());
-    let word = |word: &str| {
-        let digits = word.strip_prefix("0x").expect("a word in hexadecimals");
-        u32::from_str_radix(digits, 16).expect("digits")
-    };
-    words.map(word).collect()
-}
+const VERTEX: &[u8] = include_bytes!("../../tools/examples/mesh.vert.spv");
+const FRAGMENT: &[u8] = include_bytes!("../../tools/examples/mesh.frag.spv");
 
 /// A pipeline of the host's, with its layout.
 struct Mesh {
@@ -70,8 +59,8 @@ impl Mesh {
         // creation.
         unsafe {
             let layout = raw.create_pipeline_layout(&info, None).expect("a layout");
-            let modules = ["mesh_vert", "mesh_frag"].map(|name| {
-                let code = words(name);
+            let modules = [VERTEX, FRAGMENT].map(|module| {
+                let code = util::read_spv(&mut Cursor::new(module)).expect("a module");
                 let info = vk::ShaderModuleCreateInfo::default().code(&code);
                 raw.create_shader_module(&info, None).expect("a module")
             });

@@ -1,11 +1,12 @@
 // A small engine that knows nothing of splats, for host.cpp alone: images, a depth-tested mesh, pictures to files.
 #pragma once
 #include <vulkan/vulkan.h>
-#include "mesh.h"
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -69,12 +70,14 @@ static void barrier(VkCommandBuffer cmd, VkImage image, VkImageAspectFlags aspec
 
 struct Push { float world_to_clip[16], centre_radius[4]; };  // of mesh.vert
 static VkPipeline mesh_pipeline(VkPipelineLayout layout) {
-    VkShaderModuleCreateInfo code[2]{{VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, nullptr, 0, sizeof mesh_vert, mesh_vert},
-                                     {VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, nullptr, 0, sizeof mesh_frag, mesh_frag}};
     VkPipelineShaderStageCreateInfo stages[2]{};
     for (int i = 0; i < 2; i++) {
+        auto file = std::filesystem::path(__FILE__).replace_filename(i ? "mesh.frag.spv" : "mesh.vert.spv");
+        std::vector<uint32_t> code(std::filesystem::file_size(file) / 4);
+        std::ifstream(file, std::ios::binary).read((char *)code.data(), code.size() * 4);
+        VkShaderModuleCreateInfo info{VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, nullptr, 0, code.size() * 4, code.data()};
         VkShaderModule module;
-        VK(vkCreateShaderModule(device, &code[i], nullptr, &module));
+        VK(vkCreateShaderModule(device, &info, nullptr, &module));
         stages[i] = {VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO, nullptr, 0, i ? VK_SHADER_STAGE_FRAGMENT_BIT : VK_SHADER_STAGE_VERTEX_BIT, module, "main"};
     }
     VkPipelineVertexInputStateCreateInfo vertices{VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};

@@ -4,6 +4,9 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD_NO_PAD;
+use percent_encoding::percent_decode_str;
 use serde_json::Value;
 
 use super::super::{Failure, beside};
@@ -43,7 +46,10 @@ impl<'a> Buffers<'a> {
                 None => Cow::Borrowed(self.binary.filter(|_| number == 0).ok_or_else(missing)?),
                 Some(uri) => match uri.strip_prefix("data:") {
                     Some(data) => Cow::Owned(from_data(data)?),
-                    None => Cow::Owned(beside(&plain(uri), self.folder)?),
+                    None => {
+                        let name = percent_decode_str(uri).decode_utf8_lossy();
+                        Cow::Owned(beside(&name, self.folder)?)
+                    }
                 },
             };
             self.read.insert(number, bytes);
@@ -95,27 +101,6 @@ impl<'a> Buffers<'a> {
     }
 }
 
-/// A name without the escapes of URIs.
-fn plain(uri: &str) -> String {
-    let mut plain = Vec::new();
-    let mut rest = uri.as_bytes();
-    while let Some((&byte, after)) = rest.split_first() {
-        let digits = after
-            .get(..2)
-            .and_then(|digits| std::str::from_utf8(digits).ok());
-        let escaped = digits
-            .filter(|_| byte == b'%')
-            .and_then(|digits| u8::from_str_radix(digits, 16).ok());
-        plain.push(escaped.unwrap_or(byte));
-        rest = if escaped.is_some() {
-            &after[2..]
-        } else {
-            after
-        };
-    }
-    String::from_utf8_lossy(&plain).into_owned()
-}
-
 /// The bytes of `TYPE;base64,TEXT`.
 fn from_data(data: &str) -> Result<Vec<u8>, String> {
     let wrong = || "a buffer in the glTF's text is no base64; export the scene again".to_owned();
@@ -123,23 +108,10 @@ fn from_data(data: &str) -> Result<Vec<u8>, String> {
     if !kind.ends_with(";base64") {
         return Err(wrong());
     }
-    let mut bytes = Vec::with_capacity(text.len() / 4 * 3 + 3);
-    let (mut bits, mut count) = (0_u32, 0);
-    for byte in text.trim_end_matches('=').bytes() {
-        let digit = match byte {
-            b'A'..=b'Z' => byte - b'A',
-            b'a'..=b'z' => byte - b'a' + 26,
-            b'0'..=b'9' => byte - b'0' + 52,
-            b'+' | b'-' => 62,
-            b'/' | b'_' => 63,
-            _ => return Err(wrong()),
-        };
-        bits = bits << 6 | u32::from(digit);
-        count += 6;
-        if count >= 8 {
-            count -= 8;
-            bytes.push((bits >> count) as u8);
-        }
-    }
-    Ok(bytes)
+    // Some writers take the alphabet of URLs, and some leave the end unfilled.
+    let text = text
+        .trim_end_matches('=')
+        .replace('-', "+")
+        .replace('_', "/");
+    STANDARD_NO_PAD.decode(text).map_err(|_| wrong())
 }

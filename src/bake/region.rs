@@ -7,9 +7,9 @@ use super::half_line::HalfLine;
 use super::rays::Rays;
 use super::{BakeSettings, Fate};
 use rara_base::limits::ALPHA_MIN_INVERSE;
+use rara_reference::Side;
 use rara_reference::footprint::half_axes;
-use rara_reference::region::gaussian_side;
-use rara_reference::{Side, Vec3};
+use rara_reference::region::{Ellipsoid, gaussian_side};
 use rara_scene::Gaussians;
 use rara_scene::clip::Clip;
 use rara_scene::settings::{Mode, Settings};
@@ -52,12 +52,13 @@ impl<'a> Region<'a> {
         let scene = self.gaussians;
         let axes = half_axes::<f64>(scene.scales()[index], scene.rotations()[index]);
         let deviations = self.band(index);
-        match self.side(index, &axes, deviations) {
+        let ellipsoid = Ellipsoid::new(scene, index, axes);
+        match self.side(&ellipsoid, deviations) {
             Side::Visible | Side::Culled => return Fate::Visible,
             Side::Invisible => return Fate::Invisible,
             Side::Cutoff => {}
         }
-        if self.side(index, &axes, self.leave.min(deviations)) == Side::Visible {
+        if self.side(&ellipsoid, self.leave.min(deviations)) == Side::Visible {
             return Fate::Left;
         }
         let unit = UnitSpace {
@@ -93,9 +94,8 @@ impl<'a> Region<'a> {
         }
     }
 
-    fn side(&self, index: usize, axes: &[Vec3<f64>; 3], deviations: f64) -> Side {
-        let (scene, clip) = (self.gaussians, self.clip);
-        gaussian_side(scene, index, axes, deviations, clip, &self.settings)
+    fn side(&self, ellipsoid: &Ellipsoid<f64>, deviations: f64) -> Side {
+        gaussian_side(ellipsoid, deviations, self.clip, &self.settings)
     }
 
     /// The only surface that comes near the Gaussian, if that is a plane: all others are decided wherever it shows.

@@ -8,17 +8,18 @@
 use glam::DVec3;
 
 use super::clip;
-use super::cutoff::is_beam;
 use super::footprint::Footprint;
 use super::real::{Real, vec3};
 use super::region::{
-    HalfSpace, RegionRest, Side, gaussian_side, reduced, surface_gaussian_side, surface_half_space,
+    Ellipsoid, HalfSpace, RegionRest, Side, gaussian_side, reduced, surface_gaussian_side,
+    surface_half_space,
 };
 use super::view::ViewTransform;
 use rara_base::limits::{ALPHA_MIN_INVERSE, BEYOND_EYE, WIDENING_REST};
 use rara_scene::Gaussians;
+use rara_scene::camera::Projection;
 use rara_scene::clip::{Clip, Surface};
-use rara_scene::settings::{Mode, Settings};
+use rara_scene::settings::{ExactForm, Mode, Settings};
 
 /// The side of every Gaussian of the scene.
 pub fn classify<T: Real>(
@@ -29,83 +30,95 @@ pub fn classify<T: Real>(
 ) -> Vec<Side> {
     (0..scene.len())
         .map(|index| match Footprint::new(scene, index, view) {
-            Some(footprint) => side(scene, index, &footprint, clip, settings),
+            Some(footprint) => GaussianInView {
+                scene,
+                index,
+                footprint: &footprint,
+                clip,
+                settings,
+            }
+            .side(),
             None => Side::Culled,
         })
         .collect()
 }
 
-/// The side of one Gaussian in view.
-pub fn side<T: Real>(
-    scene: &Gaussians,
-    index: usize,
-    footprint: &Footprint<T>,
-    clip: &Clip,
-    settings: &Settings,
-) -> Side {
-    let deviations = band(scene, index, footprint, settings);
-    gaussian_side(scene, index, &footprint.axes, deviations, clip, settings)
+/// A Gaussian in view, with all on which its side and its record depend.
+#[derive(Clone, Copy)]
+pub(super) struct GaussianInView<'a, T> {
+    pub(super) scene: &'a Gaussians,
+    pub(super) index: usize,
+    pub(super) footprint: &'a Footprint<T>,
+    pub(super) clip: &'a Clip,
+    pub(super) settings: &'a Settings,
 }
 
-/// The half-spaces that surfaces keep of a Gaussian that they cut, whose side is [`Side::Cutoff`], in the clip's order.
-pub fn cutting<T: Real>(
-    scene: &Gaussians,
-    index: usize,
-    footprint: &Footprint<T>,
-    clip: &Clip,
-    settings: &Settings,
-) -> Vec<HalfSpace<T>> {
-    let cutting = cutting_surfaces(scene, index, footprint, clip, settings);
-    let axes = &footprint.axes;
-    let half_spaces = cutting
-        .iter()
-        .map(|s| surface_half_space(s, scene, index, axes));
-    half_spaces.collect()
-}
-
-/// The surfaces of the region and its parts that cut a Gaussian; none where its side is not [`Side::Cutoff`].
-pub fn cutting_surfaces<T: Real>(
-    scene: &Gaussians,
-    index: usize,
-    footprint: &Footprint<T>,
-    clip: &Clip,
-    settings: &Settings,
-) -> Vec<Surface> {
-    if side(scene, index, footprint, clip, settings) != Side::Cutoff {
-        return Vec::new();
+impl<T: Real> GaussianInView<'_, T> {
+    pub(super) fn side(&self) -> Side {
+        gaussian_side(&self.ellipsoid(), self.band(), self.clip, self.settings)
     }
-    let deviations = band(scene, index, footprint, settings);
-    let axes = &footprint.axes;
-    let mut surfaces = clip.all_surfaces();
-    surfaces.retain(|surface| {
-        surface_gaussian_side(surface, scene, index, axes, deviations, settings) == Side::Cutoff
-    });
-    surfaces
-}
 
-/// What is left of the region of one Gaussian in view, whose side is [`Side::Cutoff`].
-pub fn left<T: Real>(
-    scene: &Gaussians,
-    index: usize,
-    footprint: &Footprint<T>,
-    clip: &Clip,
-    settings: &Settings,
-) -> RegionRest<T> {
-    let deviations = band(scene, index, footprint, settings);
-    reduced(scene, index, &footprint.axes, deviations, clip, settings)
-}
-
-/// Half width of the band in which a surface cuts, standard deviations, with what perspective adds to it.
-fn band<T: Real>(
-    scene: &Gaussians,
-    index: usize,
-    footprint: &Footprint<T>,
-    settings: &Settings,
-) -> T {
-    if settings.mode == Mode::Exact && is_beam(scene, index, footprint, settings) {
-        return beam_band(footprint);
+    /// The half-spaces that surfaces keep of it where they cut it, in the clip's order.
+    pub(super) fn cutting(&self) -> Vec<HalfSpace<T>> {
+        let surfaces = self.cutting_surfaces();
+        surfaces.iter().map(|s| self.half_space(s)).collect()
     }
-    clip::band(footprint.reach, settings)
+
+    /// The surfaces of the region and its parts that cut it; none where its side is not [`Side::Cutoff`].
+    pub(super) fn cutting_surfaces(&self) -> Vec<Surface> {
+        if self.side() != Side::Cutoff {
+            return Vec::new();
+        }
+        let (ellipsoid, band) = (self.ellipsoid(), self.band());
+        let mut surfaces = self.clip.all_surfaces();
+        surfaces.retain(|surface| {
+            surface_gaussian_side(surface, &ellipsoid, band, self.settings) == Side::Cutoff
+        });
+        surfaces
+    }
+
+    /// The half-space that a surface keeps of it.
+    pub(super) fn half_space(&self, surface: &Surface) -> HalfSpace<T> {
+        surface_half_space(surface, &self.ellipsoid())
+    }
+
+    /// What is left of the region where its side is [`Side::Cutoff`].
+    pub(super) fn left(&self) -> RegionRest<T> {
+        reduced(&self.ellipsoid(), self.band(), self.clip, self.settings)
+    }
+
+    fn ellipsoid(&self) -> Ellipsoid<T> {
+        Ellipsoid::new(self.scene, self.index, self.footprint.axes)
+    }
+
+    /// Half width of the band in which a surface cuts, standard deviations, with what perspective adds to it.
+    fn band(&self) -> T {
+        if self.settings.mode == Mode::Exact && self.is_beam() {
+            return beam_band(self.footprint);
+        }
+        clip::band(self.footprint.reach, self.settings)
+    }
+
+    /// True when a splat is too large or too far off the axis for the affine form. An eye within the splat makes it too
+    /// large: its depth is then less than K < 3.4 deviations. In an orthographic view the affine form is exact for all
+    /// splats.
+    pub(super) fn is_beam(&self) -> bool {
+        let footprint = self.footprint;
+        if footprint.projection == Projection::Orthographic {
+            return false;
+        }
+        match self.settings.form {
+            ExactForm::Beam => true,
+            ExactForm::Affine => false,
+            ExactForm::Auto => {
+                let largest = self.scene.scales()[self.index].max_element();
+                let sigma_max = footprint.unit * T::of(f64::from(largest));
+                let large = sigma_max / footprint.view_centre.z
+                    > T::of(f64::from(self.settings.precision.beam_switch));
+                large || footprint.clamped
+            }
+        }
+    }
 }
 
 /// Half width of the band of a splat whose weight follows each pixel's true ray. The footprint is linear: a pixel at

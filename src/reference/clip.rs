@@ -5,7 +5,7 @@
 
 use super::footprint::half_axes;
 use super::real::Real;
-use super::region::{Side, gaussian_side};
+use super::region::{Ellipsoid, Side, gaussian_side};
 use rara_base::limits::ALPHA_MIN_INVERSE;
 use rara_scene::Gaussians;
 use rara_scene::clip::Clip;
@@ -15,9 +15,10 @@ use rara_scene::settings::{Mode, Settings};
 pub fn clip<T: Real>(scene: &Gaussians, clip: &Clip, settings: &Settings) -> Vec<Side> {
     let side = |index: usize| {
         let axes = half_axes(scene.scales()[index], scene.rotations()[index]);
+        let ellipsoid = Ellipsoid::new(scene, index, axes);
         let brightness = T::of(f64::from(scene.opacities()[index]) * f64::from(ALPHA_MIN_INVERSE));
         let reach = (T::of(2.0) * brightness.ln()).max(T::zero()).sqrt();
-        gaussian_side(scene, index, &axes, band(reach, settings), clip, settings)
+        gaussian_side(&ellipsoid, band(reach, settings), clip, settings)
     };
     (0..scene.len()).map(side).collect()
 }

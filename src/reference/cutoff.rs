@@ -1,7 +1,7 @@
 //! Stage `cutoff`: how a cut splat's weight varies over its pixels.
 
 use super::chord::Chord;
-use super::classify::{cutting, left, side};
+use super::classify::GaussianInView;
 use super::combined::CombinedCut;
 use super::exact::{AffinePlane, Beam};
 use super::footprint::Footprint;
@@ -11,7 +11,7 @@ use super::view::ViewTransform;
 use rara_scene::Gaussians;
 use rara_scene::camera::Projection;
 use rara_scene::clip::{Clip, ClipOp};
-use rara_scene::settings::{ExactForm, Mode, Settings};
+use rara_scene::settings::{Mode, Settings};
 
 /// The record of a cut splat: everything that its weight in a pixel depends on.
 #[derive(Debug, Clone)]
@@ -58,33 +58,31 @@ pub fn cutoff<T: Real>(
     clip: &Clip,
     settings: &Settings,
 ) -> Option<SplatCut<T>> {
-    if side(scene, index, footprint, clip, settings) != Side::Cutoff {
+    let gaussian = GaussianInView {
+        scene,
+        index,
+        footprint,
+        clip,
+        settings,
+    };
+    if gaussian.side() != Side::Cutoff {
         return None;
     }
     if !clip.is_general() {
-        let half_spaces = cutting(scene, index, footprint, clip, settings);
-        return Some(of_planes(
-            scene,
-            index,
-            footprint,
-            view,
-            half_spaces,
-            clip.op,
-            settings,
-        ));
+        return Some(of_planes(&gaussian, view, gaussian.cutting(), clip.op));
     }
-    let reduced = left(scene, index, footprint, clip, settings);
+    let reduced = gaussian.left();
     let op = reduced.as_planes();
     Some(match (reduced, op) {
         (RegionRest::Decided(kept), _) => SplatCut::Decided(kept),
         (RegionRest::Cut(surfaces), Some(op)) => {
             let half_spaces = surfaces.iter().map(|(surface, _)| surface.half_space);
             let half_spaces = half_spaces.collect();
-            of_planes(scene, index, footprint, view, half_spaces, op, settings)
+            of_planes(&gaussian, view, half_spaces, op)
         }
         (RegionRest::Cut(surfaces), None) => {
             let is_chord = settings.mode == Mode::Rara;
-            let follows_rays = is_chord || is_beam(scene, index, footprint, settings);
+            let follows_rays = is_chord || gaussian.is_beam();
             let front = HalfSpace {
                 normal: footprint.rows[2],
                 offset: footprint.view_centre.z,
@@ -112,14 +110,16 @@ pub fn cutoff<T: Real>(
 
 /// The record of a splat that only planes cut.
 fn of_planes<T: Real>(
-    scene: &Gaussians,
-    index: usize,
-    footprint: &Footprint<T>,
+    gaussian: &GaussianInView<'_, T>,
     view: &ViewTransform<T>,
     half_spaces: Vec<HalfSpace<T>>,
     op: ClipOp,
-    settings: &Settings,
 ) -> SplatCut<T> {
+    let &GaussianInView {
+        footprint,
+        settings,
+        ..
+    } = gaussian;
     match settings.mode {
         Mode::Rara => SplatCut::Chord(Chord {
             gradients: footprint.true_gradients(view),
@@ -133,9 +133,7 @@ fn of_planes<T: Real>(
             sigma: T::of(f64::from(settings.sigma)),
             miss: settings.miss,
         }),
-        _ if is_beam(scene, index, footprint, settings) => {
-            SplatCut::Beam(Beam::new(footprint, view, half_spaces, op))
-        }
+        _ if gaussian.is_beam() => SplatCut::Beam(Beam::new(footprint, view, half_spaces, op)),
         _ => SplatCut::Affine {
             planes: half_spaces
                 .iter()
@@ -143,28 +141,5 @@ fn of_planes<T: Real>(
                 .collect(),
             op,
         },
-    }
-}
-
-/// True when a splat is too large or too far off the axis for the affine form. An eye within the splat makes it too
-/// large: its depth is then less than K < 3.4 deviations. In an orthographic view the affine form is exact for all splats.
-pub(super) fn is_beam<T: Real>(
-    scene: &Gaussians,
-    index: usize,
-    footprint: &Footprint<T>,
-    settings: &Settings,
-) -> bool {
-    if footprint.projection == Projection::Orthographic {
-        return false;
-    }
-    match settings.form {
-        ExactForm::Beam => true,
-        ExactForm::Affine => false,
-        ExactForm::Auto => {
-            let sigma_max = footprint.unit * T::of(f64::from(scene.scales()[index].max_element()));
-            let large = sigma_max / footprint.view_centre.z
-                > T::of(f64::from(settings.precision.beam_switch));
-            large || footprint.clamped
-        }
     }
 }

@@ -15,10 +15,9 @@
 //! two where both are thresholds in one variable, as on a ray without low-pass. A union leaves out what its complements
 //! keep in common, such an interval; it keeps the rest of the whole's mean.
 
-use super::classify::cutting_surfaces;
+use super::classify::GaussianInView;
 use super::footprint::{Footprint, determinant, scaled};
 use super::real::{Real, Vec3};
-use super::region::surface_half_space;
 use super::{LayerView, layer, splat};
 use rara_scene::camera::Camera;
 use rara_scene::clip::{Clip, ClipOp};
@@ -108,9 +107,16 @@ impl<T: Real> SplatDepth<T> {
             near: open,
             op: clip.op,
         };
+        let gaussian = GaussianInView {
+            scene,
+            index,
+            footprint,
+            clip,
+            settings,
+        };
         let surfaces = match clip.is_flat() {
             true => clip.surfaces.clone(),
-            false => cutting_surfaces(scene, index, footprint, clip, settings),
+            false => gaussian.cutting_surfaces(),
         };
         if surfaces.is_empty() || !matches!(settings.mode, Mode::Rara | Mode::Exact) {
             depth.op = ClipOp::And;
@@ -121,7 +127,7 @@ impl<T: Real> SplatDepth<T> {
             depth.op = ClipOp::And;
         }
         for surface in &surfaces {
-            let half_space = surface_half_space(surface, scene, index, &footprint.axes);
+            let half_space = gaussian.half_space(surface);
             let half_space = match depth.op {
                 ClipOp::And => half_space,
                 ClipOp::Or => half_space.complement(),

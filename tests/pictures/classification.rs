@@ -88,7 +88,7 @@ proptest! {
 
         let settings = Settings::default()
 .form(form);
-        let side = classify::side(&scene, 0, &footprint, &clip, &settings);
+        let side = classify::classify(&scene, &view, &clip, &settings)[0];
         prop_assert_eq!(side, if kept { Side::Visible } else { Side::Invisible });
 
         let traced = settings

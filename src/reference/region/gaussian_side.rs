@@ -1,19 +1,15 @@
 //! On which side of the region a Gaussian is (the paper, section 3.2).
 
-use super::Side;
 use super::sides::combined;
 use super::surface::surface_gaussian_side;
-use crate::real::{Real, Vec3};
-use rara_scene::Gaussians;
+use super::{Ellipsoid, Side};
+use crate::real::Real;
 use rara_scene::clip::Clip;
 use rara_scene::settings::{Mode, Settings};
 
-/// The side of Gaussian `index`, which has the half axes `axes` and a band of `deviations` standard deviations. It is never
-/// [`Side::Culled`].
+/// The side of a Gaussian that has a band of `deviations` standard deviations. It is never [`Side::Culled`].
 pub fn gaussian_side<T: Real>(
-    scene: &Gaussians,
-    index: usize,
-    axes: &[Vec3<T>; 3],
+    ellipsoid: &Ellipsoid<T>,
     deviations: T,
     clip: &Clip,
     settings: &Settings,
@@ -22,6 +18,6 @@ pub fn gaussian_side<T: Real>(
         return Side::Visible;
     }
     combined(clip, &|surface| {
-        surface_gaussian_side(surface, scene, index, axes, deviations, settings)
+        surface_gaussian_side(surface, ellipsoid, deviations, settings)
     })
 }

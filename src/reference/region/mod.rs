@@ -4,6 +4,7 @@
 mod box_side;
 mod combination;
 mod crossing;
+mod ellipsoid;
 mod gaussian_side;
 mod half_space;
 mod plane;
@@ -21,6 +22,7 @@ mod tile_side;
 pub use box_side::{Bounds, box_side};
 pub use combination::Combination;
 pub(super) use crossing::Sight;
+pub use ellipsoid::Ellipsoid;
 pub use gaussian_side::gaussian_side;
 pub use half_space::HalfSpace;
 pub use quadric::{Symmetric, UnitSurface};

@@ -4,21 +4,14 @@ use glam::DVec3;
 
 use super::quadric::Symmetric;
 use super::region_surface::RegionSurface;
-use super::{HalfSpace, Side, UnitSurface};
+use super::{Ellipsoid, HalfSpace, Side, UnitSurface};
 use crate::real::{Real, Vec3, vec3};
-use rara_scene::Gaussians;
 use rara_scene::clip::Plane;
 
 impl RegionSurface for Plane {
     /// The length of the normal in the Gaussian's unit space is the standard deviation along the normal.
-    fn gaussian_side<T: Real>(
-        &self,
-        scene: &Gaussians,
-        index: usize,
-        axes: &[Vec3<T>; 3],
-        deviations: T,
-    ) -> Side {
-        let HalfSpace { normal, offset } = self.unit_surface(scene, index, axes).half_space;
+    fn gaussian_side<T: Real>(&self, ellipsoid: &Ellipsoid<T>, deviations: T) -> Side {
+        let HalfSpace { normal, offset } = self.unit_surface(ellipsoid).half_space;
         let support = deviations * normal.length();
         if offset >= support {
             Side::Visible
@@ -38,17 +31,13 @@ impl RegionSurface for Plane {
         }
     }
 
-    fn unit_surface<T: Real>(
-        &self,
-        scene: &Gaussians,
-        index: usize,
-        axes: &[Vec3<T>; 3],
-    ) -> UnitSurface<T> {
+    fn unit_surface<T: Real>(&self, ellipsoid: &Ellipsoid<T>) -> UnitSurface<T> {
         let n = Vec3::of(self.normal());
+        let [u, v, w] = ellipsoid.axes;
         UnitSurface {
             half_space: HalfSpace {
-                normal: vec3(axes[0].dot(n), axes[1].dot(n), axes[2].dot(n)),
-                offset: T::of(self.distance(scene.positions()[index].as_dvec3())),
+                normal: vec3(u.dot(n), v.dot(n), w.dot(n)),
+                offset: T::of(self.distance(ellipsoid.centre)),
             },
             bend: Symmetric::zero(),
         }

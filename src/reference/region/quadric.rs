@@ -3,9 +3,8 @@
 use glam::DVec3;
 
 use super::region_surface::RegionSurface;
-use super::{HalfSpace, Side};
+use super::{Ellipsoid, HalfSpace, Side};
 use crate::real::{Real, Vec3, vec3};
-use rara_scene::Gaussians;
 use rara_scene::clip::Quadric;
 
 /// A symmetric matrix.
@@ -197,14 +196,8 @@ pub(super) fn gaussian_side<T: Real>(surface: &UnitSurface<T>, deviations: T) ->
 }
 
 impl RegionSurface for Quadric {
-    fn gaussian_side<T: Real>(
-        &self,
-        scene: &Gaussians,
-        index: usize,
-        axes: &[Vec3<T>; 3],
-        deviations: T,
-    ) -> Side {
-        gaussian_side(&self.unit_surface(scene, index, axes), deviations)
+    fn gaussian_side<T: Real>(&self, ellipsoid: &Ellipsoid<T>, deviations: T) -> Side {
+        gaussian_side(&self.unit_surface(ellipsoid), deviations)
     }
 
     fn box_side(&self, middle: DVec3, half: DVec3, support: f64) -> Side {
@@ -229,13 +222,8 @@ impl RegionSurface for Quadric {
         }
     }
 
-    fn unit_surface<T: Real>(
-        &self,
-        scene: &Gaussians,
-        index: usize,
-        axes: &[Vec3<T>; 3],
-    ) -> UnitSurface<T> {
-        let centre = scene.positions()[index].as_dvec3();
+    fn unit_surface<T: Real>(&self, ellipsoid: &Ellipsoid<T>) -> UnitSurface<T> {
+        let &Ellipsoid { centre, axes } = ellipsoid;
         let gradient = Vec3::of(self.gradient(centre));
         let columns = self.matrix().to_cols_array_2d();
         let element = |i: usize, j: usize| T::of(columns[j][i]);
@@ -368,7 +356,7 @@ mod tests {
     /// Its matrix has no full rank, and rounding once made a bound of nothing. A tenth of the ball's surface is inside.
     #[test]
     fn a_cylinder_that_cuts_a_disc_from_its_side_is_not_beside_it() {
-        let mut scene = Gaussians::default();
+        let mut scene = rara_scene::Gaussians::default();
         let position = glam::Vec3::new(0.217_865_85, -0.212_699_22, 0.132_254_32);
         let scale = glam::Vec3::new(0.046_538_69, 0.081_522_67, 0.004_208_966);
         let turn = glam::Quat::from_xyzw(0.208_751_35, -0.504_046_74, 0.813_969_3, -0.199_534_07);
@@ -376,7 +364,7 @@ mod tests {
         let (from, to) = (DVec3::new(-0.4, -0.3, 0.0), DVec3::new(0.5, 0.4, 0.2));
         let quadric = Quadric::cylinder(from, to, 0.3).unwrap();
         let axes = crate::footprint::half_axes::<f64>(scene.scales()[0], scene.rotations()[0]);
-        let surface = quadric.unit_surface(&scene, 0, &axes);
+        let surface = quadric.unit_surface(&Ellipsoid::new(&scene, 0, axes));
         let deviations = (2.0 * (255.0 * 0.919_330_36_f64).ln()).sqrt();
         assert_eq!(gaussian_side(&surface, deviations), Side::Cutoff);
     }

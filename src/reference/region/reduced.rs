@@ -1,10 +1,9 @@
 //! A region as one Gaussian sees it: the surfaces that cut it, and how they combine once all others are decided.
 
 use super::surface::unit_surface;
-use super::{Side, UnitSurface, surface_gaussian_side};
-use crate::real::{Real, Vec3};
+use super::{Ellipsoid, Side, UnitSurface, surface_gaussian_side};
+use crate::real::Real;
 use rara_base::limits::MAX_CUTTING;
-use rara_scene::Gaussians;
 use rara_scene::clip::postfix::{answer, postfix};
 use rara_scene::clip::{Clip, ClipOp};
 use rara_scene::settings::Settings;
@@ -47,13 +46,10 @@ impl<T: Real> RegionRest<T> {
     }
 }
 
-/// What is left of the region of Gaussian `index`, which has the half axes `axes` and a band of `deviations` standard
-/// deviations. Beyond [`MAX_CUTTING`] surfaces only those count that are nearest; of the others it is on the side of its
+/// What is left of the region of a Gaussian that has a band of `deviations` standard deviations. Beyond [`MAX_CUTTING`] surfaces only those count that are nearest; of the others it is on the side of its
 /// centre.
 pub(crate) fn reduced<T: Real>(
-    scene: &Gaussians,
-    index: usize,
-    axes: &[Vec3<T>; 3],
+    ellipsoid: &Ellipsoid<T>,
     deviations: T,
     clip: &Clip,
     settings: &Settings,
@@ -63,8 +59,8 @@ pub(crate) fn reduced<T: Real>(
         .iter()
         .map(|step| {
             let surface = &step.surface;
-            let side = surface_gaussian_side(surface, scene, index, axes, deviations, settings);
-            (side, unit_surface(surface, scene, index, axes))
+            let side = surface_gaussian_side(surface, ellipsoid, deviations, settings);
+            (side, unit_surface(surface, ellipsoid))
         })
         .collect();
     let distance = |surface: &UnitSurface<T>| {

@@ -3,25 +3,21 @@
 use glam::DVec3;
 
 use super::region_surface::RegionSurface;
-use super::{HalfSpace, Side, UnitSurface};
-use crate::real::{Real, Vec3};
-use rara_scene::Gaussians;
+use super::{Ellipsoid, HalfSpace, Side, UnitSurface};
+use crate::real::Real;
 use rara_scene::clip::Surface;
 use rara_scene::each_surface;
 use rara_scene::settings::{Mode, Settings};
 
-/// On which side of a surface Gaussian `index` is, which has the half axes `axes` and a band of `deviations` standard
-/// deviations. A hard clip asks for the centre alone.
+/// On which side of a surface a Gaussian is that has a band of `deviations` standard deviations. A hard clip asks for the centre alone.
 pub(crate) fn surface_gaussian_side<T: Real>(
     surface: &Surface,
-    scene: &Gaussians,
-    index: usize,
-    axes: &[Vec3<T>; 3],
+    ellipsoid: &Ellipsoid<T>,
     deviations: T,
     settings: &Settings,
 ) -> Side {
     if settings.mode == Mode::Hard {
-        return match surface.distance(scene.positions()[index].as_dvec3()) >= 0.0 {
+        return match surface.distance(ellipsoid.centre) >= 0.0 {
             true => Side::Visible,
             false => Side::Invisible,
         };
@@ -29,7 +25,7 @@ pub(crate) fn surface_gaussian_side<T: Real>(
     if settings.trace_all {
         return Side::Cutoff;
     }
-    each_surface!(surface, surface => surface.gaussian_side(scene, index, axes, deviations))
+    each_surface!(surface, surface => surface.gaussian_side(ellipsoid, deviations))
 }
 
 /// On which side all Gaussians are whose centres lie in a box and that reach at most `support` from them, the layer's units.
@@ -42,24 +38,17 @@ pub(super) fn surface_box_side(
     each_surface!(surface, surface => surface.box_side(middle, half, support))
 }
 
-/// A surface in the unit space of Gaussian `index`.
-pub(crate) fn unit_surface<T: Real>(
-    surface: &Surface,
-    scene: &Gaussians,
-    index: usize,
-    axes: &[Vec3<T>; 3],
-) -> UnitSurface<T> {
-    each_surface!(surface, surface => surface.unit_surface(scene, index, axes))
+/// A surface in the unit space of a Gaussian.
+pub(crate) fn unit_surface<T: Real>(surface: &Surface, ellipsoid: &Ellipsoid<T>) -> UnitSurface<T> {
+    each_surface!(surface, surface => surface.unit_surface(ellipsoid))
 }
 
-/// The half-space that a surface keeps of Gaussian `index`, which it cuts, to first order about the Gaussian's centre.
+/// The half-space that a surface keeps of a Gaussian that it cuts, to first order about the Gaussian's centre.
 pub(crate) fn surface_half_space<T: Real>(
     surface: &Surface,
-    scene: &Gaussians,
-    index: usize,
-    axes: &[Vec3<T>; 3],
+    ellipsoid: &Ellipsoid<T>,
 ) -> HalfSpace<T> {
-    unit_surface(surface, scene, index, axes).half_space
+    unit_surface(surface, ellipsoid).half_space
 }
 
 /// The crossings of the line of points `start + t step` with a surface: all such t, in any order. No shader asks this;

@@ -16,9 +16,9 @@ use super::desc::AdoptDesc;
 use super::devices::DeviceInfo;
 use super::instance::Instance;
 use super::lent::MemorySource;
-use super::one_off::OneOff;
 use super::requirements::Support;
 use super::shape::DeviceShape;
+use super::submission::Submission;
 use super::validation::Messages;
 
 /// A device, shared by everything made from it; clones are the same device.
@@ -54,7 +54,7 @@ pub(super) struct Inner {
     source: Option<Arc<dyn MemorySource>>,
     account: Account,
     /// Idle command buffers of [`Device::submit_and_wait`].
-    pub(super) idle: Mutex<Vec<OneOff>>,
+    pub(super) idle: Mutex<Vec<Submission>>,
     /// `None` for a host's device, which is never destroyed here. Shared with a window's surface.
     owned: Option<Arc<Instance>>,
     #[cfg(feature = "lab")]
@@ -330,13 +330,13 @@ impl std::fmt::Debug for Device {
 
 impl Drop for Inner {
     fn drop(&mut self) {
-        for one_off in self
+        for submission in self
             .idle
             .get_mut()
             .unwrap_or_else(PoisonError::into_inner)
             .drain(..)
         {
-            one_off.destroy(&self.raw);
+            submission.destroy(&self.raw);
         }
         // Our own allocator frees its blocks now, while there is a device.
         drop(self.allocator.take());

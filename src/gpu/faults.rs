@@ -108,25 +108,14 @@ pub fn is_slow() -> bool {
 
 /// A device as a host would lend it.
 pub fn lent(host: &Device) -> AdoptDesc {
-    let queue = host.lock_queue();
-    AdoptDesc {
-        api_version: host.support().api_version,
-        instance: host.instance().clone(),
-        physical_device: host.physical(),
-        device: host.raw().clone(),
-        queue: *queue,
-        queue_family: host.queue_family(),
-        mesh_shader: host.support().mesh_shader,
-        push_descriptor: host.support().push_descriptor,
-        full_subgroups: host.support().full_subgroups[1] > 0,
-        debug_utils: true,
-        pipeline_statistics: false,
-        pipeline_cache: vk::PipelineCache::null(),
-        allocator: None,
-        memory: None,
-        shape: None,
-        keep_alive: None,
-    }
+    let queue = (*host.lock_queue(), host.queue_family());
+    let (instance, raw) = (host.instance().clone(), host.raw().clone());
+    let support = host.support();
+    AdoptDesc::new(support.api_version, instance, host.physical(), raw, queue)
+        .mesh_shader(support.mesh_shader)
+        .push_descriptor(support.push_descriptor)
+        .full_subgroups(support.full_subgroups[1] > 0)
+        .debug_utils(true)
 }
 
 /// Sets which of these calls fails from now on, if any.

@@ -4,6 +4,7 @@ use ash::vk;
 
 use super::device::Device;
 use super::failure::failed;
+use super::submission::Submission;
 use rara_base::error::Result;
 
 /// How many frames may be unfinished at once: one is drawn while the next is recorded.
@@ -17,11 +18,8 @@ pub struct InFlight {
     device: Device,
 }
 
-#[derive(Default)]
 struct Slot {
-    pool: vk::CommandPool,
-    cmd: vk::CommandBuffer,
-    fence: vk::Fence,
+    submission: Submission,
     /// Signalled when the frame's image may be drawn into.
     acquired: vk::Semaphore,
     /// True when a submission will signal, or has signalled, the fence.
@@ -38,29 +36,16 @@ impl InFlight {
             device: device.clone(),
         };
         for _ in 0..FRAMES {
-            this.slots.push(Slot::default());
+            this.slots.push(Slot {
+                submission: Submission::new(device, "frame")?,
+                acquired: vk::Semaphore::null(),
+                submitted: false,
+            });
             let slot = this.slots.last_mut().expect("pushed above");
-            let raw = device.raw();
-            let info = vk::CommandPoolCreateInfo::default()
-                .flags(vk::CommandPoolCreateFlags::TRANSIENT)
-                .queue_family_index(device.queue_family());
-            // SAFETY: the device is alive as long as `this`, also for the calls below.
-            slot.pool = unsafe { raw.create_command_pool(&info, None) }
-                .map_err(failed("vkCreateCommandPool"))?;
-            let info = vk::CommandBufferAllocateInfo::default()
-                .command_pool(slot.pool)
-                .command_buffer_count(1);
-            // SAFETY: the pool was created just now.
-            slot.cmd = unsafe { raw.allocate_command_buffers(&info) }
-                .map_err(failed("vkAllocateCommandBuffers"))?[0];
-            // SAFETY: as above.
-            slot.fence = unsafe { raw.create_fence(&vk::FenceCreateInfo::default(), None) }
-                .map_err(failed("vkCreateFence"))?;
-            // SAFETY: as above.
-            slot.acquired =
-                unsafe { raw.create_semaphore(&vk::SemaphoreCreateInfo::default(), None) }
-                    .map_err(failed("vkCreateSemaphore"))?;
-            device.set_name(slot.cmd, "frame");
+            let info = vk::SemaphoreCreateInfo::default();
+            // SAFETY: the device is alive as long as `this`.
+            slot.acquired = unsafe { device.raw().create_semaphore(&info, None) }
+                .map_err(failed("vkCreateSemaphore"))?;
             device.set_name(slot.acquired, "acquired");
         }
         Ok(this)
@@ -85,11 +70,11 @@ impl InFlight {
         }
         let raw = self.device.raw();
         // SAFETY: the fence belongs to a submission; after the wait it is signalled and nothing waits for it.
-        unsafe { raw.wait_for_fences(&[slot.fence], true, u64::MAX) }
+        unsafe { raw.wait_for_fences(&[slot.submission.fence], true, u64::MAX) }
             .map_err(failed("vkWaitForFences"))?;
         slot.submitted = false;
         // SAFETY: as above.
-        unsafe { raw.reset_fences(&[slot.fence]) }.map_err(failed("vkResetFences"))
+        unsafe { raw.reset_fences(&[slot.submission.fence]) }.map_err(failed("vkResetFences"))
     }
 
     /// The number of the next frame's slot, below [`FRAMES`]. After [`wait`](Self::wait) nothing uses it.
@@ -116,20 +101,9 @@ impl InFlight {
         drawn: vk::Semaphore,
         record: impl FnOnce(vk::CommandBuffer) -> Result<()>,
     ) -> Result<()> {
-        let raw = self.device.raw();
         let slot = &mut self.slots[self.next];
-        let begin = vk::CommandBufferBeginInfo::default()
-            .flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
         // SAFETY: the slot's last submission was waited for, says the caller.
-        unsafe { raw.reset_command_pool(slot.pool, vk::CommandPoolResetFlags::empty()) }
-            .map_err(failed("vkResetCommandPool"))?;
-        // SAFETY: as above, the command buffer is initial.
-        unsafe { raw.begin_command_buffer(slot.cmd, &begin) }
-            .map_err(failed("vkBeginCommandBuffer"))?;
-        record(slot.cmd)?; // after an error nothing is submitted, and the next reset undoes the recording
-        // SAFETY: it is recording.
-        unsafe { raw.end_command_buffer(slot.cmd) }.map_err(failed("vkEndCommandBuffer"))?;
-        let commands = [vk::CommandBufferSubmitInfo::default().command_buffer(slot.cmd)];
+        unsafe { slot.submission.record(&self.device, record) }?;
         // Only the drawing waits for the image, and not what comes before.
         let waits = [vk::SemaphoreSubmitInfo::default()
             .semaphore(slot.acquired)
@@ -138,16 +112,8 @@ impl InFlight {
         let signals = [vk::SemaphoreSubmitInfo::default()
             .semaphore(drawn)
             .stage_mask(vk::PipelineStageFlags2::ALL_COMMANDS)];
-        let submit = vk::SubmitInfo2::default()
-            .wait_semaphore_infos(&waits)
-            .command_buffer_infos(&commands)
-            .signal_semaphore_infos(&signals);
-        let queue = self.device.lock_queue();
-        // SAFETY: the lock keeps our threads from the queue; the fence is unsignalled, the command buffer executable, and
-        // the caller vouches for the semaphores.
-        unsafe { self.device.commands().submit(*queue, &submit, slot.fence) }
-            .map_err(failed("vkQueueSubmit2"))?;
-        drop(queue);
+        // SAFETY: it was recorded just now, the fence is unsignalled, and the caller vouches for the semaphores.
+        unsafe { slot.submission.submit(&self.device, &waits, &signals) }?;
         slot.submitted = true;
         self.next = (self.next + 1) % FRAMES;
         Ok(())
@@ -163,8 +129,7 @@ impl Drop for InFlight {
         unsafe {
             let _ = raw.device_wait_idle();
             for slot in &self.slots {
-                raw.destroy_command_pool(slot.pool, None);
-                raw.destroy_fence(slot.fence, None);
+                slot.submission.destroy(raw);
                 raw.destroy_semaphore(slot.acquired, None);
             }
         }

@@ -35,7 +35,6 @@ mod label;
 mod layout;
 mod lent;
 mod memory;
-mod one_off;
 mod open;
 mod pipeline;
 mod pipeline_cache;
@@ -44,6 +43,7 @@ mod recorder;
 mod requirements;
 mod shader;
 mod shape;
+mod submission;
 mod submit;
 #[cfg(feature = "view")]
 mod surface;

@@ -76,24 +76,16 @@ impl Device {
         let empty = vk::PipelineCacheCreateInfo::default();
         // SAFETY: the device was created just now. It works without a cache too.
         let pipeline_cache = unsafe { raw.create_pipeline_cache(&empty, None) }.unwrap_or_default();
-        let adopt = AdoptDesc {
-            api_version: super::instance::API_VERSION,
-            instance: owned.raw.clone(),
-            physical_device: physical,
-            device: raw.clone(),
-            queue,
-            queue_family: family,
-            mesh_shader: support.mesh_shader,
-            push_descriptor: support.push_descriptor,
-            full_subgroups: support.full_subgroups[1] > 0,
-            debug_utils: owned.debug_utils,
-            pipeline_statistics: support.pipeline_statistics,
-            pipeline_cache,
-            allocator: None,
-            memory: None,
-            shape: desc.shape,
-            keep_alive: None,
-        };
+        let instance = owned.raw.clone();
+        let version = super::instance::API_VERSION;
+        let adopt = AdoptDesc::new(version, instance, physical, raw.clone(), (queue, family))
+            .mesh_shader(support.mesh_shader)
+            .push_descriptor(support.push_descriptor)
+            .full_subgroups(support.full_subgroups[1] > 0)
+            .debug_utils(owned.debug_utils)
+            .pipeline_statistics(support.pipeline_statistics)
+            .pipeline_cache(pipeline_cache)
+            .shape(desc.shape);
         let allocator = allocator(&adopt).inspect_err(|_| {
             // SAFETY: nothing else was made from the device, and nobody else knows it.
             unsafe {

@@ -81,8 +81,7 @@ impl Buffer {
                 | Usage::SHADER_DEVICE_ADDRESS
                 | Usage::TRANSFER_SRC
                 | Usage::TRANSFER_DST
-                | Usage::INDIRECT_BUFFER
-                | Usage::INDEX_BUFFER,
+                | Usage::INDIRECT_BUFFER,
         );
         // SAFETY: the device is alive as long as `device`.
         let handle =

@@ -21,6 +21,7 @@ mod formats;
 mod framing;
 mod gaussians;
 mod generate;
+mod harmonics;
 mod layer;
 #[cfg(feature = "formats")]
 mod load;

@@ -15,6 +15,8 @@ pub mod clip;
 mod cross_section;
 pub mod depth;
 #[cfg(feature = "formats")]
+mod failure;
+#[cfg(feature = "formats")]
 mod format;
 #[cfg(feature = "formats")]
 mod formats;

@@ -11,13 +11,12 @@ struct Params {
 
 layout(local_size_x = BLOCK_SIZE) in;
 
-// In the two low bits.
 BUFFER(readonly, 1, uint, sides)
 BUFFER(writeonly, 2, uint, block_list)
 BUFFER(writeonly, 3, FrameCounts, counts)
 
 bool differs(uint block) {
-    return (sides.at[block] & 3u) == SIDE_CUTOFF;
+    return (sides.at[block] & SIDE_BITS) == SIDE_CUTOFF;
 }
 
 uvec4 totals_of(uint block) {
@@ -29,7 +28,8 @@ void main() {
     uint place = run.before.x;
     for (uint block = run.bounds.x; block < run.bounds.y; block++) {
         if (differs(block)) {
-            block_list.at[place++] = block;
+            bool is_in_view = push.params.stage == 1u && (sides.at[block] & WHOLLY_IN_VIEW) != 0u;
+            block_list.at[place++] = is_in_view ? block | LISTED_IN_VIEW : block;
         }
     }
     if (run.is_last) {

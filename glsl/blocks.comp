@@ -22,6 +22,7 @@ void main() {
     if (CLIP && side == SIDE_VISIBLE) {
         enter_shortlist(block, 1.0);
         side = block_side_in_view(blocks.at[block], clip_sides.at[block]);
+        side |= side == SIDE_CUTOFF ? WHOLLY_IN_VIEW : 0u;
     }
     block_sides.at[block] = side;
 }

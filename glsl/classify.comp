@@ -4,7 +4,8 @@
 // opacity and size, and finds the side of what is in view. It writes two bits a Gaussian (survives, is cut) and the
 // block's totals; compact turns them into ordered lists.
 #include "band.glsl"
-#include "masks.glsl"
+#define SETS 3u // visible, cut, invisible
+#include "side_masks.glsl"
 
 layout(local_size_x = BLOCK_SIZE) in;
 layout(constant_id = 0) const bool CLIP = false;
@@ -15,15 +16,9 @@ BUFFER(readonly, 4, FrameCounts, counts)
 BUFFER(readonly, 5, uint, clip_sides)
 BUFFER(readonly, 6, uint, clip_masks)
 BUFFER(writeonly, 7, uint, masks)
-BUFFER(writeonly, 8, uvec4, block_counts)
+BUFFER(writeonly, 8, uint, block_counts)
 BUFFER(readonly, 9, uint, shortlists)
 #include "region/gaussian_side.glsl"
-
-shared uint splat_mask[WORDS];
-shared uint cutoff_mask[WORDS];
-shared uint visible_count;
-shared uint cutoff_count;
-shared uint invisible_count;
 
 // True when some pixel centre lies in the splat's bounding box and in the picture.
 bool covers_a_pixel(vec2 centre, vec2 half_sides) {
@@ -42,22 +37,28 @@ uint clip_stage_side(uint block, uint local) {
     return side_of(clip_masks.at[word], clip_masks.at[word + WORDS], local);
 }
 
-uint classify(uint block, uint local) {
+// `is_in_view` says that all of the block is: none of it is culled.
+uint classify(uint block, uint local, bool is_in_view) {
     uint index = block * BLOCK_SIZE + local;
     Gaussian gaussian = gaussians.at[index];
-    // The depth comes first: it is cheap and culls what is behind the eye. The test is negated to cull a NaN too.
-    float depth = dot(LAYER_VIEW.rotation_z.xyz, eye_relative(gaussian.position_opacity.xyz));
-    if (!(depth >= VIEW.near_cut) || opacity_in_layer(gaussian) < ALPHA_MIN) {
-        return SIDE_CULLED;
-    }
-    Footprint f = footprint(gaussian);
-    float opacity = opacity_on_screen(f, gaussian);
-    // Deviations beyond the range of single precision have no footprint. Each number is tested by itself, since max()
-    // may drop a NaN.
-    bool drawable = all(lessThan(abs(conic_of(f)), vec3(3e38))) && all(lessThan(abs(f.screen_centre), vec2(3e38)));
-    bool shows = opacity >= ALPHA_MIN && covers_a_pixel(f.screen_centre, box_half_sides(f, opacity_extent(opacity)));
-    if (!drawable || !shows) {
-        return SIDE_CULLED;
+    Footprint f;
+    if (CLIP && is_in_view) {
+        f = unprojected(gaussian);
+    } else {
+        // The depth comes first: it is cheap and culls what is behind the eye. The test is negated to cull a NaN too.
+        float depth = dot(LAYER_VIEW.rotation_z.xyz, eye_relative(gaussian.position_opacity.xyz));
+        if (!(depth >= VIEW.near_cut) || opacity_in_layer(gaussian) < ALPHA_MIN) {
+            return SIDE_CULLED;
+        }
+        f = footprint(gaussian);
+        float opacity = opacity_on_screen(f, gaussian);
+        // Deviations beyond the range of single precision have no footprint. Each number is tested by itself, since max()
+        // may drop a NaN.
+        bool drawable = all(lessThan(abs(conic_of(f)), vec3(3e38))) && all(lessThan(abs(f.screen_centre), vec2(3e38)));
+        bool shows = opacity >= ALPHA_MIN && covers_a_pixel(f.screen_centre, box_half_sides(f, opacity_extent(opacity)));
+        if (!drawable || !shows) {
+            return SIDE_CULLED;
+        }
     }
     if (!CLIP) {
         return SIDE_VISIBLE;
@@ -74,44 +75,22 @@ uint classify(uint block, uint local) {
 
 void main() {
     uint local = gl_LocalInvocationIndex;
-    if (local < WORDS) {
-        splat_mask[local] = 0u;
-        cutoff_mask[local] = 0u;
-    }
-    if (local == 0u) {
-        visible_count = 0u;
-        cutoff_count = 0u;
-        invisible_count = 0u;
-    }
-    barrier();
     uint group = LINEAR_GROUP;
     bool is_block = group < counts.at[0].classify_groups.w;
-    uint block = is_block ? block_list.at[group] : 0u;
+    uint entry = is_block ? block_list.at[group] : 0u;
+    uint block = entry & ~LISTED_IN_VIEW;
     enter_layer_of_block(block);
+    uint side = SIDE_CULLED;
     if (is_block && local < block_length(block)) {
-        uint side = classify(block, local);
-        uint bit = 1u << (local & 31u);
-        // Neither sums nor unions depend on the order of the atomics.
-        if (side >= SIDE_VISIBLE) {
-            atomicOr(splat_mask[local >> 5], bit);
-        }
-        if (side == SIDE_VISIBLE) {
-            atomicAdd(visible_count, 1u);
-        } else if (side == SIDE_CUTOFF) {
-            atomicOr(cutoff_mask[local >> 5], bit);
-            atomicAdd(cutoff_count, 1u);
-        } else if (side == SIDE_INVISIBLE) {
-            atomicAdd(invisible_count, 1u);
-        }
+        side = classify(block, local, (entry & LISTED_IN_VIEW) != 0u);
     }
-    barrier();
-    if (is_block) {
-        if (local < WORDS) {
-            masks.at[block * 2u * WORDS + local] = splat_mask[local];
-            masks.at[block * 2u * WORDS + WORDS + local] = cutoff_mask[local];
-        }
-        if (local == 0u) {
-            block_counts.at[block] = uvec4(visible_count, cutoff_count, invisible_count, 0u);
-        }
+    find_masks(side == SIDE_VISIBLE ? 1u : side == SIDE_CUTOFF ? 2u : side == SIDE_INVISIBLE ? 4u : 0u);
+    if (is_block && local < WORDS) {
+        uint cut = set_masks[WORDS + local];
+        masks.at[block * 2u * WORDS + local] = set_masks[local] | cut;
+        masks.at[block * 2u * WORDS + WORDS + local] = cut;
+    }
+    if (is_block && local < SETS) {
+        block_counts.at[4u * block + local] = set_count(local);
     }
 }

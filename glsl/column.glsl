@@ -4,6 +4,7 @@
 #ifndef RARA_COLUMN
 #define RARA_COLUMN
 #include "weight.glsl"
+#include "record.glsl"
 
 // Rows count from the column's middle, so that the polynomials' terms stay small.
 float row_place(uint row) {
@@ -70,11 +71,11 @@ bool is_carried_away(vec3 linear, vec3 curvature, vec2 delta) {
 
 // The weights of a record that is a curve, a polynomial of degree four in the splat's own coordinates: u is the column's,
 // v the first row's, and v changes by v_step a row.
-void curve_weights(uint base, float u, float v, float v_step, float alpha[ROWS], out float weight[ROWS]) {
-    vec4 linear = cut_records.at[base];
-    vec4 bend = cut_records.at[base + 1u];
-    vec4 twist = cut_records.at[base + 2u];
-    vec4 wave = cut_records.at[base + CUT_HEADER];
+void curve_weights(Record record, float u, float v, float v_step, float alpha[ROWS], out float weight[ROWS]) {
+    vec4 linear = RECORD_AT(record, 0);
+    vec4 bend = RECORD_AT(record, 1);
+    vec4 twist = RECORD_AT(record, 2);
+    vec4 wave = RECORD_AT(record, CUT_HEADER);
     float at = linear.x + u * (linear.y + u * (bend.x + u * (twist.x + u * wave.x)));
     float slope = linear.z + u * (bend.y + u * (twist.y + u * wave.y));
     float second = bend.z + u * (twist.z + u * wave.z);
@@ -98,15 +99,13 @@ struct ColumnSight {
 };
 
 // `delta` and `pixel_centre` are those of the column's middle.
-ColumnSight column_sight(uint base, vec2 delta, vec2 pixel_centre) {
-    vec4 h1 = cut_records.at[base + 1u];
-    vec4 h2 = cut_records.at[base + 2u];
+ColumnSight column_sight(Record record, vec2 delta, vec2 pixel_centre) {
     ColumnSight column;
-    Sight s = sight_through(cut_records.at[base], h1, h2, pixel_centre - principal_point(), delta);
+    Sight s = sight_through(RECORD_AT(record, 0), RECORD_AT(record, 1), RECORD_AT(record, 2), pixel_centre - principal_point(), delta);
     column.s = s;
-    column.b2_step = -h2.xyz;
+    column.b2_step = -RECORD_AT(record, 2).xyz;
     column.c_step = cross(s.b1, column.b2_step);
-    column.delta_y = vec2(s.delta.y, h1.w);
+    column.delta_y = vec2(s.delta.y, RECORD_AT(record, 1).w);
     vec3 c_step = column.c_step;
     column.det = product(s.c, c_step, s.c, c_step) + s.low_pass * product(s.b2, column.b2_step, s.b2, column.b2_step);
     column.det.x += s.low_pass * (dot(s.b1, s.b1) + s.low_pass);
@@ -137,22 +136,22 @@ void beam_zs(ColumnSight column, vec4 half_space, out float z[ROWS]) {
 
 // `exact` with the camera outside the splat: exact_weight of glsl/weight.glsl. `delta` and `pixel_centre` are the first
 // row's.
-void exact_weights(uint base, uint flags, vec2 delta, vec2 pixel_centre, float alpha[ROWS], out float weight[ROWS]) {
+void exact_weights(Record record, uint flags, vec2 delta, vec2 pixel_centre, float alpha[ROWS], out float weight[ROWS]) {
     vec2 middle = vec2(0.0, 0.5 * float(ROWS - 1u));
-    ColumnSight column = column_sight(base, delta + middle, pixel_centre + middle);
+    ColumnSight column = column_sight(record, delta + middle, pixel_centre + middle);
     float z[ROWS];
     uint count = flags >> CUT_COUNT_SHIFT;
     if (!SEVERAL || count == 1u) {
-        beam_zs(column, cut_records.at[base + CUT_HEADER], z);
+        beam_zs(column, RECORD_AT(record, CUT_HEADER), z);
         phi_or_side(z, alpha, weight);
         return;
     }
-    if (count == 2u && cut_records.at[base + CUT_HEADER].xyz == -cut_records.at[base + CUT_HEADER + 1u].xyz) {
+    if (count == 2u && RECORD_AT(record, CUT_HEADER).xyz == -plane_of(record_base(record), 1u).xyz) {
         // The planes bound a slab: both are thresholds in one variable.
         float other[ROWS];
-        beam_zs(column, plane_of(base, 0u), z);
+        beam_zs(column, RECORD_AT(record, CUT_HEADER), z);
         phi_or_side(z, alpha, weight);
-        beam_zs(column, plane_of(base, 1u), z);
+        beam_zs(column, plane_of(record_base(record), 1u), z);
         phi_or_side(z, alpha, other);
         for (uint row = 0u; row < ROWS; row++) {
             weight[row] = combined(flags, max(0.0, weight[row] - (1.0 - other[row])));
@@ -167,7 +166,7 @@ void exact_weights(uint base, uint flags, vec2 delta, vec2 pixel_centre, float a
         opens[row] = 0u;
     }
     for (uint plane = 0u; plane < count; plane++) {
-        beam_zs(column, plane_of(base, plane), z);
+        beam_zs(column, plane_of(record_base(record), plane), z);
         for (uint row = 0u; row < ROWS; row++) {
             least[row] = min(least[row], z[row]);
             opens[row] += z[row] < PHI_ONE ? 1u : 0u;
@@ -183,7 +182,7 @@ void exact_weights(uint base, uint flags, vec2 delta, vec2 pixel_centre, float a
     for (; edges != 0u; edges &= edges - 1u) {
         uint edge = uint(findLSB(edges));
         vec2 below = vec2(0.0, float(edge));
-        float share = exact_weight(base, flags, delta + below, pixel_centre + below);
+        float share = exact_weight(record_base(record), flags, delta + below, pixel_centre + below);
         for (uint row = 0u; row < ROWS; row++) {
             weight[row] = row == edge ? share : weight[row];
         }
@@ -192,12 +191,12 @@ void exact_weights(uint base, uint flags, vec2 delta, vec2 pixel_centre, float a
 
 // `exact` with the camera inside the splat: front_weight of glsl/weight.glsl. `delta` and `pixel_centre` are the first
 // row's.
-void front_weights(uint base, uint flags, vec2 delta, vec2 pixel_centre, out float weight[ROWS]) {
+void front_weights(Record record, uint flags, vec2 delta, vec2 pixel_centre, out float weight[ROWS]) {
     uint count = flags >> CUT_COUNT_SHIFT;
     vec2 middle = vec2(0.0, 0.5 * float(ROWS - 1u));
-    ColumnSight column = column_sight(base, delta + middle, pixel_centre + middle);
+    ColumnSight column = column_sight(record, delta + middle, pixel_centre + middle);
     float front[ROWS];
-    beam_zs(column, cut_records.at[base + CUT_HEADER + count], front);
+    beam_zs(column, plane_of(record_base(record), count), front);
     float far[ROWS];
     float gone[ROWS];
     for (uint row = 0u; row < ROWS; row++) {
@@ -205,7 +204,7 @@ void front_weights(uint base, uint flags, vec2 delta, vec2 pixel_centre, out flo
         gone[row] = 0.0;
     }
     for (uint plane = 0u; plane < count; plane++) {
-        vec4 half_space = plane_of(base, plane);
+        vec4 half_space = plane_of(record_base(record), plane);
         float z[ROWS];
         beam_zs(column, half_space, z);
         vec2 along = vec2(dot(half_space.xyz, column.s.c), dot(half_space.xyz, column.c_step));
@@ -223,10 +222,10 @@ void front_weights(uint base, uint flags, vec2 delta, vec2 pixel_centre, out flo
 
 // `rara` with the camera outside the splat: chord_weight of glsl/weight.glsl. `delta` and `pixel_centre` are the first
 // row's.
-void chord_weights(uint base, uint flags, vec2 delta, vec2 pixel_centre, out float weight[ROWS]) {
+void chord_weights(Record record, uint flags, vec2 delta, vec2 pixel_centre, out float weight[ROWS]) {
     uint count = flags >> CUT_COUNT_SHIFT;
     vec2 middle = vec2(0.0, 0.5 * float(ROWS - 1u));
-    ColumnSight column = column_sight(base, delta + middle, pixel_centre + middle);
+    ColumnSight column = column_sight(record, delta + middle, pixel_centre + middle);
     Sight s = column.s;
     vec3 c_step = column.c_step;
     // |offset|^2 / |c|^2 is the square of the line's distance from the centre, offset x c / |c|^2 its nearest point.
@@ -250,7 +249,7 @@ void chord_weights(uint base, uint flags, vec2 delta, vec2 pixel_centre, out flo
         whole[row] = 2.0 * high[row];
     }
     for (uint plane = 0u; plane < count; plane++) {
-        vec4 half_space = plane_of(base, plane);
+        vec4 half_space = plane_of(record_base(record), plane);
         vec2 along = vec2(dot(half_space.xyz, s.c), dot(half_space.xyz, c_step));
         vec3 nearest = product(offset, offset_step, cross(s.c, half_space.xyz), cross(c_step, half_space.xyz));
         for (uint row = 0u; row < ROWS; row++) {
@@ -276,10 +275,9 @@ void chord_weights(uint base, uint flags, vec2 delta, vec2 pixel_centre, out flo
 }
 
 // The weight of each pixel of a column. `delta`, `uv` and `pixel_centre` are the first row's; v changes by `v_step` a row.
-void cut_weights(uint cut, vec2 delta, vec2 uv, float v_step, vec2 pixel_centre, float alpha[ROWS],
+void cut_weights(Record record, vec2 delta, vec2 uv, float v_step, vec2 pixel_centre, float alpha[ROWS],
                  out float weight[ROWS]) {
-    uint base = cut * push.params.cut_stride;
-    uint flags = to_uint(cut_records.at[base].w);
+    uint flags = record_flags(record);
     if (COMBINED && (flags & CUT_COMBINED) != 0u) {
         uint rows = 0u;
         for (uint row = 0u; row < ROWS; row++) {
@@ -290,24 +288,24 @@ void cut_weights(uint cut, vec2 delta, vec2 uv, float v_step, vec2 pixel_centre,
         for (; rows != 0u; rows &= rows - 1u) {
             uint at = uint(findLSB(rows));
             vec2 below = vec2(0.0, float(at));
-            Sight s = line_of_sight(base, delta + below, pixel_centre + below);
-            float share = combined_weight(s, base, flags, push.params.sigma);
+            Sight s = line_of_sight(record_base(record), delta + below, pixel_centre + below);
+            float share = combined_weight(s, record_base(record), flags, push.params.sigma);
             for (uint row = 0u; row < ROWS; row++) {
                 weight[row] = row == at ? share : weight[row];
             }
         }
     } else if (CLIP_MODE == MODE_EXACT && (flags & CUT_CURVE) != 0u) {
-        curve_weights(base, uv.x, uv.y, v_step, alpha, weight);
+        curve_weights(record, uv.x, uv.y, v_step, alpha, weight);
     } else if (CLIP_MODE == MODE_EXACT && (flags & CUT_FRONT) != 0u) {
-        front_weights(base, flags, delta, pixel_centre, weight);
+        front_weights(record, flags, delta, pixel_centre, weight);
     } else if (CLIP_MODE == MODE_EXACT) {
-        exact_weights(base, flags, delta, pixel_centre, alpha, weight);
+        exact_weights(record, flags, delta, pixel_centre, alpha, weight);
     } else if ((flags & CUT_FRONT) == 0u) {
-        chord_weights(base, flags, delta, pixel_centre, weight);
+        chord_weights(record, flags, delta, pixel_centre, weight);
     } else {
         for (uint row = 0u; row < ROWS; row++) {
             vec2 below = vec2(0.0, float(row));
-            weight[row] = chord_weight(base, flags, delta + below, pixel_centre + below);
+            weight[row] = chord_weight(record_base(record), flags, delta + below, pixel_centre + below);
         }
     }
 }

@@ -18,7 +18,7 @@ BUFFER(writeonly, 5, FrameCounts, counts)
 // Visible, cut and invisible Gaussians of a block, and 1 where some survive.
 uvec4 totals_of(uint block) {
     enter_layer_of_block(block);
-    uint side = block_sides.at[block];
+    uint side = block_sides.at[block] & SIDE_BITS;
     // Those of a block that is settled mean nothing, but are there without another wait.
     uvec3 counted = block_counts.at[block].xyz;
     uvec3 totals = side == SIDE_CUTOFF ? counted

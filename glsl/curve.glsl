@@ -178,15 +178,15 @@ bool is_good(Curve curve, CurveSamples z, float opacity, float extent) {
         float r = curve_radius(ring, extent);
         float alpha = opacity * exp(-0.5 * r * r);
         for (uint step = 0u; step < CURVE_STEPS; step++) {
-            // A steep edge may pass between the samples: what counts is z's error wherever an edge, the exact one or
-            // the fit's, may come near. Where both are on one side, far enough for either to stay there, nothing does.
             vec2 d = r * curve_direction(ring, step);
             float exact = z.at[ring * CURVE_STEPS + step];
             float fit = curve_z(curve, d);
-            float change = max(length(curve_gradient(curve, d)), exact_change(z, outwards, step));
-            if (!(min(abs(exact), abs(fit)) >= 5.0 + change && exact * fit >= 0.0)) {
-                // The test is negated, so that a fit that is no number is no good.
-                if (!(0.4 * alpha * abs(fit - exact) <= CURVE_TOLERANCE)) {
+            // The test is negated, so that a fit that is no number is no good.
+            if (!(0.4 * alpha * abs(fit - exact) <= CURVE_TOLERANCE)) {
+                // A steep edge may pass between the samples: what counts is z's error wherever an edge, the exact one or
+                // the fit's, may come near. Where both are on one side, far enough for either to stay there, nothing does.
+                float change = max(length(curve_gradient(curve, d)), exact_change(z, outwards, step));
+                if (!(min(abs(exact), abs(fit)) >= 5.0 + change && exact * fit >= 0.0)) {
                     return false;
                 }
             }

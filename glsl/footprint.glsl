@@ -78,7 +78,8 @@ mat3 half_axes(Gaussian gaussian) {
     return mat3(turn[0] * gaussian.scale.x, turn[1] * gaussian.scale.y, turn[2] * gaussian.scale.z);
 }
 
-Footprint footprint(Gaussian gaussian) {
+// What a footprint knows of the Gaussian before it is projected.
+Footprint unprojected(Gaussian gaussian) {
     Footprint f;
     f.relative = eye_relative(gaussian.position_opacity.xyz);
     f.view_centre = view_position(gaussian.position_opacity.xyz, f.relative);
@@ -88,6 +89,12 @@ Footprint footprint(Gaussian gaussian) {
     f.m3 = LAYER_VIEW.rotation_z.xyz * f.axes;
     f.w = homogeneous(f.view_centre.z);
     f.w_gradient = is_orthographic() ? vec3(0.0) : f.m3;
+    f.clamped = false;
+    return f;
+}
+
+Footprint footprint(Gaussian gaussian) {
+    Footprint f = unprojected(gaussian);
     vec2 slope = f.view_centre.xy / f.w;
     f.screen_centre = VIEW.focal.xy * slope + VIEW.focal.zw;
     f.slope = clamp(slope, VIEW.slope_bounds.xz, VIEW.slope_bounds.yw);

@@ -32,7 +32,7 @@ void main() {
     }
     enter_layer_of_block(block);
     uint base = block * RECLIP_WORDS;
-    uint view_side = block_sides.at[block];
+    uint view_side = block_sides.at[block] & SIDE_BITS;
     uint in_view = view_side == SIDE_VISIBLE ? block_length(block) : view_side == SIDE_CUTOFF ? block_counts.at[block].x : 0u;
     uint before = reclips.at[base + RECLIP_SIDE];
     if (push.params.fresh != 0u) {

@@ -9,15 +9,26 @@
 #define IN_BATCH gl_SubgroupInvocationID
 #define OF(invocation, value) subgroupShuffle(value, invocation)
 
-Seen mine;
+// A vote: drivers for CPUs ask one invocation after the other, but shuffle with an instruction.
+bool all_of(bool agrees) {
+    uint against = agrees ? 0u : 1u;
+    for (uint apart = gl_SubgroupSize / 2u; apart > 0u; apart /= 2u) {
+        against |= OF(gl_SubgroupInvocationID ^ apart, against);
+    }
+    return against == 0u;
+}
 
-void hand_over(Seen splat) {
+Seen mine;
+Record mine_record;
+
+void hand_over(Seen splat, Record record) {
     mine = splat;
+    mine_record = record;
 }
 
 // True when the clip has nothing to do with any splat of the batch in this tile.
 bool is_whole_batch() {
-    return CLIP_MODE >= MODE_RARA && subgroupAll(mine.linear.x == Z_WHOLE);
+    return CLIP_MODE >= MODE_RARA && all_of(mine.linear.x == Z_WHOLE);
 }
 
 Seen taken_over(uint i, bool may_be_cut) {
@@ -37,8 +48,20 @@ Seen taken_over(uint i, bool may_be_cut) {
     return splat;
 }
 
+// The record of a splat, if it has one.
+Record record_taken_over(uint i, Seen splat) {
+    Record record;
+    if (splat.linear.x < -Z_RANGE) {
+        record.base = OF(i, mine_record.base);
+        for (uint k = 0u; k <= CUT_HEADER; k++) {
+            record.begin[k] = OF(i, mine_record.begin[k]);
+        }
+    }
+    return record;
+}
+
 bool all_done() {
-    return subgroupAll(done);
+    return all_of(done);
 }
 
 #else
@@ -49,7 +72,7 @@ bool all_done() {
 shared Seen batch[TILE_WIDTH * TILE_HEIGHT];
 shared uint at_work; // 1 when an invocation is not done
 
-void hand_over(Seen splat) {
+void hand_over(Seen splat, Record) {
     batch[IN_BATCH] = splat;
     barrier();
 }
@@ -65,6 +88,10 @@ Seen taken_over(uint i, bool may_be_cut) {
         splat.linear = vec3(Z_WHOLE, 0.0, 0.0);
     }
     return splat;
+}
+
+Record record_taken_over(uint i, Seen splat) {
+    return record_of(splat.linear);
 }
 
 // Also waits until all have seen the batch before.

@@ -66,11 +66,11 @@ struct Seen {
 #include "tile_batch.glsl"
 
 // Applies a cut splat's weights to its alphas, and returns them in `weight`.
-void weigh(Seen splat, vec2 delta, vec2 uv, inout float alpha[ROWS], out float weight[ROWS]) {
+void weigh(Seen splat, Record record, vec2 delta, vec2 uv, inout float alpha[ROWS], out float weight[ROWS]) {
     if (CLIP_MODE == MODE_EXACT && splat.linear.x > -Z_RANGE) {
         carried_weights(splat.linear, splat.curvature, delta, alpha, weight);
     } else {
-        cut_weights(record_number(splat.linear), delta, uv, splat.conic_opacity.x, pixel_centre, alpha, weight);
+        cut_weights(record, delta, uv, splat.conic_opacity.x, pixel_centre, alpha, weight);
     }
     bool whole = true;
     for (uint row = 0u; row < ROWS; row++) {
@@ -94,7 +94,7 @@ bool hide(float far, inout float alpha[ROWS]) {
 }
 
 // `may_be_cut` is a constant where it is called, and false where nothing weighs splats.
-void blend(Seen splat, vec2 delta, bool may_be_cut) {
+void blend(Seen splat, Record record, vec2 delta, bool may_be_cut) {
     float u = splat.centre_conic.z * delta.x;
     float v = splat.centre_conic.w * delta.x;
     float alpha[ROWS];
@@ -114,7 +114,7 @@ void blend(Seen splat, vec2 delta, bool may_be_cut) {
             }
         }
         if (may_be_cut && CLIP_MODE >= MODE_RARA && splat.linear.x < Z_RANGE) {
-            weigh(splat, delta, vec2(u, v + splat.conic_opacity.x * delta.y), alpha, weight);
+            weigh(splat, record, delta, vec2(u, v + splat.conic_opacity.x * delta.y), alpha, weight);
         }
         float most = 0.0;
         for (uint row = 0u; row < ROWS; row++) {
@@ -149,8 +149,9 @@ bool is_away(Seen splat, vec2 delta) {
         && is_carried_away(splat.linear, splat.curvature, delta));
 }
 
-// A splat as an invocation hands it to all. Where the cut's edge does not run through the tile it is whole, or away.
-Seen load(uint number, vec2 tile_middle) {
+// A splat as an invocation hands it to all, and its record if it has one. Where the cut's edge does not run through the tile it
+// is whole, or away.
+Seen load(uint number, vec2 tile_middle, out Record record) {
     Seen splat;
     vec4 conic_cut = SPLAT_CONIC(number);
     vec4 colour_cut = SPLAT_COLOUR(number);
@@ -163,7 +164,8 @@ Seen load(uint number, vec2 tile_middle) {
         splat.curvature = SPLAT_CURVATURE(number).xyz;
     }
     if (CLIP_MODE >= MODE_RARA && SHOW != SHOW_WEIGHT && splat.linear.x < Z_RANGE) {
-        uint side = tile_side(splat.linear, splat.curvature, splat.centre_conic, splat.conic_opacity.x, tile_middle);
+        record = record_of(splat.linear);
+        uint side = tile_side(splat.linear, splat.curvature, record, splat.centre_conic, splat.conic_opacity.x, tile_middle);
         splat.linear.x = side == SIDE_VISIBLE ? Z_WHOLE : side == SIDE_INVISIBLE ? Z_CUT_AWAY : splat.linear.x;
     }
     splat.far = DEPTH_FORM != DEPTH_NONE ? farness(host_depth(SPLAT_DEPTH(number))) : 0.0;
@@ -212,14 +214,16 @@ void main() {
     }
     for (uint first = begin; first < end && !all_done(); first += BATCH) {
         uint number = tile_splats.at[min(first + IN_BATCH, end - 1u)];
-        hand_over(load(number, tile_middle));
+        Record record;
+        Seen own = load(number, tile_middle, record);
+        hand_over(own, record);
         uint count = min(end - first, BATCH);
         // Most batches of a cut scene hold no cut splat, and without the code for weights the loop keeps more in registers.
         if (is_whole_batch()) {
             for (uint i = 0u; i < count; i++) {
                 Seen splat = taken_over(i, false);
                 if (!done) {
-                    blend(splat, pixel_centre - splat.centre_conic.xy, false);
+                    blend(splat, record, pixel_centre - splat.centre_conic.xy, false);
                 }
             }
             continue;
@@ -227,9 +231,10 @@ void main() {
         for (uint i = 0u; i < count; i++) {
             // All invocations run this, also those that are done: subgroup operations need every one.
             Seen splat = taken_over(i, true);
+            record = record_taken_over(i, splat);
             vec2 delta = pixel_centre - splat.centre_conic.xy;
             if (!done && !((RECLIPPED || CLIP_MODE >= MODE_RARA) && is_away(splat, delta))) {
-                blend(splat, delta, true);
+                blend(splat, record, delta, true);
             }
         }
     }

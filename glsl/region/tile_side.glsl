@@ -3,6 +3,7 @@
 // glsl/weight.glsl. Twin: src/reference/region/tile_side.rs.
 #ifndef RARA_REGION_TILE_SIDE
 #define RARA_REGION_TILE_SIDE
+#include "record.glsl"
 #include "region/sides.glsl"
 
 // From a tile's middle to its outermost pixel centres, px.
@@ -29,11 +30,11 @@ uint carried_side(vec3 linear, vec3 curvature, vec2 delta) {
 
 // A record that is a curve. `uv` are the tile's middle in the splat's own coordinates, and `uv_reach` is how far its pixels'
 // are from those.
-uint curve_side(uint base, vec2 uv, vec2 uv_reach) {
-    vec4 linear = cut_records.at[base];
-    vec4 bend = cut_records.at[base + 1u];
-    vec4 twist = cut_records.at[base + 2u];
-    vec4 wave = cut_records.at[base + CUT_HEADER];
+uint curve_side(Record record, vec2 uv, vec2 uv_reach) {
+    vec4 linear = RECORD_AT(record, 0);
+    vec4 bend = RECORD_AT(record, 1);
+    vec4 twist = RECORD_AT(record, 2);
+    vec4 wave = RECORD_AT(record, CUT_HEADER);
     float u = uv.x;
     float v = uv.y;
     float z = linear.x + u * (linear.y + u * (bend.x + u * (twist.x + u * wave.x)))
@@ -70,12 +71,12 @@ float determinant(float c_length, vec2 b, float low_pass) {
     return c_length * c_length + low_pass * (dot(b, b) + low_pass);
 }
 
-TileSight tile_sight(uint base, vec2 delta, vec2 middle) {
+TileSight tile_sight(Record record, vec2 delta, vec2 middle) {
     TileSight tile;
-    tile.s = line_of_sight(base, delta, middle);
+    tile.s = sight_through(RECORD_AT(record, 0), RECORD_AT(record, 1), RECORD_AT(record, 2), middle - principal_point(), delta);
     tile.s.low_pass = CLIP_MODE == MODE_RARA ? 0.0 : tile.s.low_pass;
-    tile.lean = cut_records.at[base + 2u].xyz;
-    tile.delta_reach = TILE_REACH * cut_records.at[base + 1u].w;
+    tile.lean = RECORD_AT(record, 2).xyz;
+    tile.delta_reach = TILE_REACH * RECORD_AT(record, 1).w;
     tile.b_reach = TILE_REACH * length(tile.lean);
     tile.c_x = TILE_REACH.x * cross(tile.s.b2, tile.lean);
     tile.c_y = TILE_REACH.y * cross(tile.lean, tile.s.b1);
@@ -146,19 +147,19 @@ bool is_no_tail(float z, float front) {
 }
 
 // A record of planes. `delta` is the tile's middle relative to the splat's centre, `middle` the same in the picture.
-uint planes_side(uint base, uint flags, vec2 delta, vec2 middle) {
+uint planes_side(Record record, uint flags, vec2 delta, vec2 middle) {
     float certain = TILE_MARGIN * (CLIP_MODE == MODE_RARA ? push.params.sigma : PHI_ONE);
     bool from_inside = CLIP_MODE == MODE_EXACT && (flags & CUT_FRONT) != 0u;
-    TileSight tile = tile_sight(base, delta, middle);
+    TileSight tile = tile_sight(record, delta, middle);
     uint count = flags >> CUT_COUNT_SHIFT;
     ZRange front;
     if (from_inside) {
-        front = z_range(tile, cut_records.at[base + CUT_HEADER + count]);
+        front = z_range(tile, plane_of(record_base(record), count));
     }
     bool visible = true;
     bool invisible = false;
     for (uint plane = 0u; plane < count; plane++) {
-        ZRange z = z_range(tile, plane_of(base, plane));
+        ZRange z = z_range(tile, plane_of(record_base(record), plane));
         bool keeps = z.low > certain;
         bool drops = z.high < -certain;
         if (from_inside) {
@@ -180,17 +181,16 @@ uint planes_side(uint base, uint flags, vec2 delta, vec2 middle) {
 #endif
 
 // The side of the tile with this middle, px, in a splat that is cut.
-uint tile_side(vec3 linear, vec3 curvature, vec4 centre_conic, float conic_z, vec2 middle) {
+uint tile_side(vec3 linear, vec3 curvature, Record record, vec4 centre_conic, float conic_z, vec2 middle) {
     vec2 delta = middle - centre_conic.xy;
     if (CLIP_MODE == MODE_EXACT && linear.x > -Z_RANGE) {
         return carried_side(linear, curvature, delta);
     }
-    uint base = record_number(linear) * push.params.cut_stride;
-    uint flags = to_uint(cut_records.at[base].w);
+    uint flags = record_flags(record);
     if (CLIP_MODE == MODE_EXACT && (flags & CUT_CURVE) != 0u) {
         vec2 uv = vec2(centre_conic.z * delta.x, centre_conic.w * delta.x + conic_z * delta.y);
         vec2 reach = vec2(abs(centre_conic.z) * TILE_REACH.x, abs(centre_conic.w) * TILE_REACH.x + abs(conic_z) * TILE_REACH.y);
-        return curve_side(base, uv, reach);
+        return curve_side(record, uv, reach);
     }
     if (CLIP_MODE == MODE_RARA && MISS != MISS_PEAK) {
         return SIDE_CUTOFF; // lines of sight beside the ellipsoid are kept or dropped wherever they are
@@ -198,7 +198,7 @@ uint tile_side(vec3 linear, vec3 curvature, vec4 centre_conic, float conic_z, ve
     bool is_combined = COMBINED && (flags & CUT_COMBINED) != 0u;
 #ifdef RARA_SUBGROUP
     if (is_combined) {
-        return combination_side(base, flags, delta, middle);
+        return combination_side(record, flags, delta, middle);
     }
 #else
     // On GPUs these bounds would take more registers than all the rest of a pipeline for one surface, or for combined records.
@@ -206,7 +206,7 @@ uint tile_side(vec3 linear, vec3 curvature, vec4 centre_conic, float conic_z, ve
         return SIDE_CUTOFF;
     }
 #endif
-    return planes_side(base, flags, delta, middle);
+    return planes_side(record, flags, delta, middle);
 }
 
 #endif

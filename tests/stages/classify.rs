@@ -16,7 +16,7 @@ pub fn sides(stages: &mut Stages) -> Vec<Option<Side>> {
     let side = |index: usize| {
         let (block, place) = (index / BLOCK_SIZE as usize, index % BLOCK_SIZE as usize);
         let bit = |mask: &[u32; 8]| mask[place / 32] >> (place % 32) & 1 == 1;
-        match of_blocks[block] {
+        match of_blocks[block] & 3 {
             0 => Some(Side::Culled),
             1 => Some(Side::Invisible),
             2 => Some(Side::Visible),
@@ -108,7 +108,7 @@ fn check(stages: &mut Stages, camera: &Camera, planes: &Clip, settings: &Setting
     let totals: Vec<[u32; 4]> = stages.read("block_counts");
     let mut apart = 0;
     for (block, twin) in twin.chunks(BLOCK_SIZE as usize).enumerate() {
-        if of_blocks[block] == 3 {
+        if of_blocks[block] & 3 == 3 {
             let counts = rara_reference::counts(twin);
             let [visible, cutoff, invisible, _] = totals[block];
             apart += visible.abs_diff(counts.visible)

@@ -34,7 +34,7 @@ pub struct SavedCamera {
     /// Row by row.
     world_to_camera: [f64; 16],
     #[serde(default)]
-    projection: Projection,
+    projection: Name,
     #[serde(skip_serializing_if = "Option::is_none")]
     clip_near: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -59,12 +59,23 @@ impl From<&Camera> for SavedCamera {
             cy: Some(camera.cy),
             eye: Some(camera.eye.to_array()),
             world_to_camera: camera.world_to_camera().transpose().to_cols_array(),
-            projection: camera.projection,
+            projection: match camera.projection {
+                Projection::Orthographic => Name::Orthographic,
+                Projection::Perspective => Name::Perspective,
+            },
             clip_near: camera.clip_near,
             clip_far: camera.clip_far,
             near_cut: camera.near_cut,
         }
     }
+}
+
+#[derive(Debug, Clone, PartialEq, Deserialize, Serialize, Default)]
+#[serde(rename_all = "lowercase")]
+enum Name {
+    #[default]
+    Perspective,
+    Orthographic,
 }
 
 pub(super) fn parse(json: &[u8]) -> Result<Camera, String> {
@@ -115,9 +126,13 @@ impl SavedCamera {
             centre: (self.cx, self.cy),
             pose: Pose::WorldToCamera(matrix),
         };
+        let projection = match self.projection {
+            Name::Perspective => Projection::Perspective,
+            Name::Orthographic => Projection::Orthographic,
+        };
         let mut camera = parts
             .camera(what)?
-            .projection(self.projection)
+            .projection(projection)
             .clip_near(self.clip_near)
             .clip_far(self.clip_far)
             .near_cut(self.near_cut);

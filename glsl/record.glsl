@@ -1,0 +1,53 @@
+// A cut splat's record (cut.glsl) as tiles read it. Included after the buffer `cut_records` and the parameter cut_stride are declared.
+#ifndef RARA_RECORD
+#define RARA_RECORD
+#include "cut.glsl"
+
+#ifdef RARA_SUBGROUP
+
+// Where the record is, and its first vec4s, which suffice for one surface: an invocation loads them once for all.
+struct Record {
+    uint base;
+    vec4 begin[CUT_HEADER + 1u];
+};
+#define RECORD_AT(record, i) record.begin[i]
+
+uint record_base(Record record) {
+    return record.base;
+}
+
+// The record that a splat's carried slopes name, if they name one.
+Record record_of(vec3 linear) {
+    Record record;
+    if (linear.x < -Z_RANGE) {
+        record.base = record_number(linear) * push.params.cut_stride;
+        for (uint i = 0u; i <= CUT_HEADER; i++) {
+            record.begin[i] = cut_records.at[record.base + i];
+        }
+    }
+    return record;
+}
+
+#else
+
+// On GPUs each pixel reads the record itself: it would take too many registers.
+struct Record {
+    vec3 linear;
+};
+#define RECORD_AT(record, i) cut_records.at[record_base(record) + i]
+
+uint record_base(Record record) {
+    return record_number(record.linear) * push.params.cut_stride;
+}
+
+Record record_of(vec3 linear) {
+    return Record(linear);
+}
+
+#endif
+
+uint record_flags(Record record) {
+    return to_uint(RECORD_AT(record, 0).w);
+}
+
+#endif

@@ -15,8 +15,6 @@ pub enum Access {
     DrawRead,
     /// An indirect dispatch or draw reads its arguments.
     IndirectRead,
-    /// An indexed draw reads its indices.
-    IndexRead,
     /// A copy reads.
     TransferRead,
     /// A copy, fill or update writes.
@@ -27,7 +25,7 @@ pub enum Access {
 
 /// The one table, in the order of the names: stages, the memory that is read there, and the memory that is written.
 #[rustfmt::skip]
-const TABLE: [(Access, Stages, Memory, Memory); 9] = {
+const TABLE: [(Access, Stages, Memory, Memory); 8] = {
     use Access::*;
     const NONE: Memory = Memory::NONE;
     [
@@ -36,7 +34,6 @@ const TABLE: [(Access, Stages, Memory, Memory); 9] = {
         (ComputeReadWrite, Stages::COMPUTE_SHADER, Memory::SHADER_STORAGE_READ,   Memory::SHADER_STORAGE_WRITE),
         (DrawRead,         DRAW_STAGES,            Memory::SHADER_STORAGE_READ,   NONE),
         (IndirectRead,     Stages::DRAW_INDIRECT,  Memory::INDIRECT_COMMAND_READ, NONE),
-        (IndexRead,        Stages::INDEX_INPUT,    Memory::INDEX_READ,            NONE),
         (TransferRead,     Stages::ALL_TRANSFER,   Memory::TRANSFER_READ,         NONE),
         (TransferWrite,    Stages::ALL_TRANSFER,   NONE,                          Memory::TRANSFER_WRITE),
         (HostRead,         Stages::HOST,           Memory::HOST_READ,             NONE),

@@ -87,33 +87,6 @@ impl<'a> Drawer<'a> {
         };
     }
 
-    /// Draws with the `VkDrawIndexedIndirectCommand` at `offset` in `args`, and 32-bit indices from the beginning of
-    /// `indices`.
-    pub fn draw_indexed_indirect(
-        &mut self,
-        pipeline: &GraphicsPipeline,
-        buffers: &[&Buffer],
-        params: &[u32],
-        indices: &Buffer,
-        args: &Buffer,
-        offset: u64,
-    ) {
-        self.bind(pipeline, false, buffers, params);
-        check_args::<vk::DrawIndexedIndirectCommand>(args, offset);
-        // SAFETY: as for `draw_indirect`, and for `indices`.
-        unsafe {
-            self.device.raw().cmd_bind_index_buffer(
-                self.cmd,
-                indices.handle(),
-                0,
-                vk::IndexType::UINT32,
-            );
-            self.device
-                .raw()
-                .cmd_draw_indexed_indirect(self.cmd, args.handle(), offset, 1, 0);
-        }
-    }
-
     /// Draws with the `VkDrawMeshTasksIndirectCommandEXT` at `offset` in `args`.
     pub fn draw_mesh_tasks_indirect(
         &mut self,

@@ -282,7 +282,6 @@ functions! {
         dispatch = "vkCmdDispatch": PFN_vkCmdDispatch(cmd: C, x: u32, y: u32, z: u32);
         dispatch_indirect = "vkCmdDispatchIndirect": PFN_vkCmdDispatchIndirect(cmd: C, args: vk::Buffer, offset: u64);
         draw_indirect = "vkCmdDrawIndirect": PFN_vkCmdDrawIndirect(cmd: C, args: vk::Buffer, offset: u64, count: u32, stride: u32);
-        draw_indexed = "vkCmdDrawIndexedIndirect": PFN_vkCmdDrawIndexedIndirect(cmd: C, args: vk::Buffer, offset: u64, count: u32, stride: u32);
         draw_mesh = "vkCmdDrawMeshTasksIndirectEXT": PFN_vkCmdDrawMeshTasksIndirectEXT(cmd: C, args: vk::Buffer, offset: u64, count: u32, stride: u32);
         begin_rendering = "vkCmdBeginRendering": PFN_vkCmdBeginRendering(cmd: C, info: *const vk::RenderingInfo<'static>);
         fill = "vkCmdFillBuffer": PFN_vkCmdFillBuffer(cmd: C, target: vk::Buffer, offset: u64, size: u64, word: u32);

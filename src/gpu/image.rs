@@ -78,6 +78,16 @@ impl Image {
         // SAFETY: the device is alive as long as `device`.
         let handle =
             unsafe { device.raw().create_image(&info, None) }.map_err(failed("vkCreateImage"))?;
+        // From here on dropping `image` cleans up.
+        let mut image = Self {
+            device: device.clone(),
+            handle,
+            view: vk::ImageView::null(),
+            extent,
+            format: desc.format,
+            name: desc.name.into(),
+            allocation: None,
+        };
         // SAFETY: the image was created just now.
         let requirements = unsafe { device.raw().get_image_memory_requirements(handle) };
         let allocation = device.allocate(&AllocationCreateDesc {
@@ -88,36 +98,18 @@ impl Image {
             // Drivers compress render targets only in memory of their own.
             allocation_scheme: AllocationScheme::DedicatedImage(handle),
         });
-        let allocation = match allocation {
-            Ok(allocation) => allocation,
-            Err(error) => {
-                // SAFETY: created above, used by nothing.
-                unsafe { device.raw().destroy_image(handle, None) };
-                let size = format!(
-                    "{} x {} ({})",
+        let allocation = allocation.map_err(|refusal| {
+            refusal.error(|why| {
+                Error::Memory(format!(
+                    "image \"{}\" of {} x {} ({}) could not be allocated ({why}); make the picture smaller",
+                    desc.name,
                     desc.width,
                     desc.height,
                     bytes(requirements.size)
-                );
-                return Err(error.error(|why| {
-                    Error::Memory(format!(
-                        "image \"{}\" of {size} could not be allocated ({why}); make the picture smaller",
-                        desc.name
-                    ))
-                }));
-            }
-        };
-        // From here on dropping `image` cleans up.
-        let mut image = Self {
-            device: device.clone(),
-            handle,
-            view: vk::ImageView::null(),
-            extent,
-            format: desc.format,
-            name: desc.name.into(),
-            allocation: Some(allocation),
-        };
-        let allocation = image.allocation.as_ref().expect("set above");
+                ))
+            })
+        })?;
+        let allocation = image.allocation.insert(allocation);
         // SAFETY: the memory fits the requirements it was allocated for, and the image is not bound yet.
         unsafe {
             device

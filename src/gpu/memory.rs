@@ -42,7 +42,7 @@ struct BufferInner {
     size: u64,
     name: Box<str>,
     location: Location,
-    /// `None` only while being dropped.
+    /// `None` only while being made or dropped.
     allocation: Option<Memory>,
 }
 
@@ -81,12 +81,21 @@ impl Buffer {
                 | Usage::SHADER_DEVICE_ADDRESS
                 | Usage::TRANSFER_SRC
                 | Usage::TRANSFER_DST
-                | Usage::INDIRECT_BUFFER
-                | Usage::INDEX_BUFFER,
+                | Usage::INDIRECT_BUFFER,
         );
         // SAFETY: the device is alive as long as `device`.
         let handle =
             unsafe { device.raw().create_buffer(&info, None) }.map_err(failed("vkCreateBuffer"))?;
+        // From here on dropping `buffer` cleans up.
+        let mut buffer = BufferInner {
+            device: device.clone(),
+            handle,
+            address: 0,
+            size,
+            name: desc.name.into(),
+            location: desc.location,
+            allocation: None,
+        };
         // SAFETY: the buffer was created just now.
         let requirements = unsafe { device.raw().get_buffer_memory_requirements(handle) };
         let allocation = device.allocate(&AllocationCreateDesc {
@@ -104,25 +113,8 @@ impl Buffer {
                 AllocationScheme::GpuAllocatorManaged
             },
         });
-        let allocation = match allocation {
-            Ok(allocation) => allocation,
-            Err(error) => {
-                // SAFETY: created above, used by nothing.
-                unsafe { device.raw().destroy_buffer(handle, None) };
-                return Err(error.error(full));
-            }
-        };
-        // From here on dropping `buffer` cleans up.
-        let mut buffer = BufferInner {
-            device: device.clone(),
-            handle,
-            address: 0,
-            size,
-            name: desc.name.into(),
-            location: desc.location,
-            allocation: Some(allocation),
-        };
-        let allocation = buffer.allocation();
+        let allocation = allocation.map_err(|refusal| refusal.error(full))?;
+        let allocation = buffer.allocation.insert(allocation);
         // SAFETY: the memory fits the requirements it was allocated for, and the buffer is not bound yet.
         unsafe {
             device

@@ -317,13 +317,10 @@ impl<'a> Recorder<'a> {
         };
     }
 
-    /// Makes buffers visible to draws later in the command buffer, as storage, arguments and indices, so that they need
-    /// no barrier inside a rendering scope.
+    /// Makes buffers visible to draws later in the command buffer, as storage and arguments, so that they need no
+    /// barrier inside a rendering scope.
     pub fn ready_to_draw(&mut self, buffers: &[&Buffer]) {
-        self.ready(
-            buffers,
-            &[Access::DrawRead, Access::IndirectRead, Access::IndexRead],
-        );
+        self.ready(buffers, &[Access::DrawRead, Access::IndirectRead]);
     }
 
     /// Makes buffers visible to the host, once it has waited for the submission.

@@ -2,7 +2,9 @@
 
 use glam::{DVec4, Quat, Vec3};
 
+use super::failure::Failure;
 use super::{Format, Gaussians, LoadReport, Property, SceneFile, sh_coefficients};
+use rara_base::counted::counted;
 
 /// Slots of a row, see [`FIXED`]: the scales, by default their logarithms.
 pub(super) const SCALES: usize = 3;
@@ -30,10 +32,8 @@ pub(super) enum ColumnForm {
     /// Scales as logarithms, opacities as logits.
     Logarithms,
     /// Scales as logarithms, opacities from 0 to 1.
-    #[cfg_attr(not(feature = "formats"), allow(dead_code))]
     LogScales,
     /// Both as they are.
-    #[cfg_attr(not(feature = "formats"), allow(dead_code))]
     Plain,
 }
 
@@ -236,6 +236,31 @@ fn unit(q: DVec4) -> Option<Quat> {
     }
     let q = (q / largest).normalize();
     Some(Quat::from_vec4(q.as_vec4()))
+}
+
+/// Refuses more Gaussians than there are numbers for.
+pub(super) fn check_count(count: u64) -> Result<(), String> {
+    match count > u64::from(u32::MAX) {
+        false => Ok(()),
+        true => Err(format!(
+            "{} are more than the {} that can be numbered; split the file",
+            counted(count, "Gaussian"),
+            u32::MAX
+        )),
+    }
+}
+
+/// An assembler with room for so many Gaussians, for which the file has bytes.
+pub(super) fn room(count: u64, sh_degree: u32, stored: ColumnForm) -> Result<Assembler, Failure> {
+    check_count(count)?;
+    let assembler = Assembler::with_room(count, sh_degree, Vec::new());
+    let assembler = assembler.ok_or_else(|| Failure::Memory(counted(count, "Gaussian")))?;
+    Ok(assembler.stored(stored))
+}
+
+/// The degree of spherical harmonics of which a Gaussian has so many numbers above degree 0.
+pub(super) fn degree_of(rest: usize) -> Option<u32> {
+    (0..=3).find(|&degree| 3 * (sh_coefficients(degree) - 1) == rest)
 }
 
 #[cfg(test)]

@@ -15,6 +15,11 @@ use rara_base::setters;
 
 /// How a camera takes points in its own axes, X right, Y down and Z forward, to pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[cfg_attr(
+    feature = "json",
+    derive(serde::Deserialize, serde::Serialize),
+    serde(rename_all = "lowercase")
+)]
 pub enum Projection {
     /// A pinhole: lines of sight pass through the eye, and a point is seen at `(fx X / Z + cx, fy Y / Z + cy)`.
     #[default]

@@ -15,12 +15,15 @@ pub mod clip;
 mod cross_section;
 pub mod depth;
 #[cfg(feature = "formats")]
+mod failure;
+#[cfg(feature = "formats")]
 mod format;
 #[cfg(feature = "formats")]
 mod formats;
 mod framing;
 mod gaussians;
 mod generate;
+mod harmonics;
 mod layer;
 #[cfg(feature = "formats")]
 mod load;

@@ -13,7 +13,6 @@ pub(super) struct Input<'a> {
     /// Stands for the file in messages.
     pub(super) name: &'a Path,
     /// The folder of the files that this one may name; none for a file in memory.
-    #[cfg_attr(not(feature = "formats"), allow(dead_code))]
     pub(super) folder: Option<&'a Path>,
     /// The properties that are asked for.
     pub(super) properties: &'a [&'a str],
@@ -52,10 +51,9 @@ impl SceneFile {
 /// Loads a scene from a file of any [format](Format), which is found by what is in the file, whatever its name.
 ///
 /// Of 3DGS `.ply` files this reads ascii and binary of either byte order, spherical harmonics of degree 0 to 3, and
-/// properties of any type in any order; properties and elements that are no part of a Gaussian are ignored. The other
-/// formats but `.compressed.ply` need the feature `formats`. Scenes of several files, as SOG that is not packed and
-/// `.gltf`, are loaded by the file that names the others; for SOG the folder does, too. Where a format has other axes, as
-/// `.spz` and glTF have, they become those of a 3DGS `.ply`: right, down and forward.
+/// properties of any type in any order; properties and elements that are no part of a Gaussian are ignored. Scenes of several
+/// files, as SOG that is not packed and `.gltf`, are loaded by the file that names the others; for SOG the folder does, too.
+/// Where a format has other axes, as `.spz` and glTF have, they become those of a 3DGS `.ply`: right, down and forward.
 ///
 /// Peak memory is the scene itself plus a few MiB, and for formats beside `.ply` the file and what it decompresses to.
 /// `progress` is called now and then with the bytes read so far and the file's size, last with both equal. A file of zero
@@ -81,7 +79,6 @@ pub fn load_with(
 ) -> Result<(SceneFile, Vec<Property>)> {
     // Before opening it, which would wait for a pipe's writer.
     let metadata = std::fs::metadata(path).map_err(Error::io(path))?;
-    #[cfg(feature = "formats")]
     if let Some(file) = ["meta.json", "lod-meta.json"]
         .map(|name| path.join(name))
         .iter()
@@ -149,14 +146,10 @@ fn read<R: Read + Seek>(
         properties,
     };
     // What is of no known format is read as a PLY, which says what is wrong with it, where no other format can be.
-    #[cfg(feature = "formats")]
     let loaded = match start.starts_with(b"ply") {
-        true => ply::read(input, &mut progress),
-        false => super::formats::read(&start, input, &mut progress),
+        true => ply::read(input, &mut progress)?,
+        false => super::formats::read(&start, input, &mut progress)?,
     };
-    #[cfg(not(feature = "formats"))]
-    let loaded = ply::read(input, &mut progress);
-    let loaded = loaded?;
     progress.left(0);
     Ok(loaded)
 }

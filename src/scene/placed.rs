@@ -3,6 +3,7 @@
 use glam::{DMat3, DVec3};
 
 use super::{Gaussians, sh_coefficients};
+use crate::harmonics::basis;
 use crate::placement::Placement;
 
 impl Gaussians {
@@ -89,7 +90,7 @@ fn bands(turn: DMat3, degree: u32) -> Vec<Band> {
             let angle = std::f64::consts::TAU * f64::from(step) / 8.0;
             let radius = (1.0 - z * z).sqrt();
             let to = DVec3::new(radius * angle.cos(), radius * angle.sin(), z);
-            let (here, there) = (functions(to), functions(turn.transpose() * to));
+            let (here, there) = (basis(to), basis(turn.transpose() * to));
             for (band, matrix) in (1..).zip(&mut matrices) {
                 let first = sh_coefficients(band - 1);
                 for (i, row) in matrix.iter_mut().enumerate() {
@@ -110,32 +111,6 @@ fn bands(turn: DMat3, degree: u32) -> Vec<Band> {
     matrices
 }
 
-/// The spherical harmonics that 3DGS uses, in its order and with its signs, in a direction of length one.
-fn functions(direction: DVec3) -> [f64; 16] {
-    use std::f64::consts::PI;
-    let DVec3 { x, y, z } = direction;
-    let (xx, yy, zz) = (x * x, y * y, z * z);
-    let root = |value: f64| (value / PI).sqrt();
-    [
-        0.5 * root(1.0),
-        -0.5 * root(3.0) * y,
-        0.5 * root(3.0) * z,
-        -0.5 * root(3.0) * x,
-        0.5 * root(15.0) * x * y,
-        -0.5 * root(15.0) * y * z,
-        0.25 * root(5.0) * (2.0 * zz - xx - yy),
-        -0.5 * root(15.0) * x * z,
-        0.25 * root(15.0) * (xx - yy),
-        -0.25 * root(17.5) * y * (3.0 * xx - yy),
-        0.5 * root(105.0) * x * y * z,
-        -0.25 * root(10.5) * y * (4.0 * zz - xx - yy),
-        0.25 * root(7.0) * z * (2.0 * zz - 3.0 * xx - 3.0 * yy),
-        -0.25 * root(10.5) * x * (4.0 * zz - xx - yy),
-        0.25 * root(105.0) * z * (xx - yy),
-        -0.25 * root(17.5) * x * (xx - 3.0 * yy),
-    ]
-}
-
 #[cfg(test)]
 mod tests {
     use glam::DQuat;
@@ -145,7 +120,7 @@ mod tests {
 
     /// The colour of a Gaussian in a direction.
     fn seen(gaussians: &Gaussians, index: usize, direction: DVec3) -> DVec3 {
-        let parts = functions(direction);
+        let parts = basis(direction);
         let own = gaussians.sh_of(index).chunks_exact(3);
         own.zip(parts)
             .map(|(c, part)| DVec3::new(c[0].into(), c[1].into(), c[2].into()) * part)

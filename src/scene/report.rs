@@ -62,7 +62,6 @@ impl LoadReport {
     }
 
     /// Adds the report on another part of the same scene, before which there were `before` elements.
-    #[cfg_attr(not(feature = "formats"), allow(dead_code))]
     pub(crate) fn append(&mut self, other: Self, before: u64) {
         self.dropped += other.dropped;
         self.repaired += other.repaired;

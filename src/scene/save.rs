@@ -4,7 +4,6 @@ use std::cmp::Reverse;
 use std::io::{self, Write};
 use std::path::Path;
 
-#[cfg(feature = "formats")]
 use super::formats::WRITERS;
 use super::{Format, Gaussians};
 use rara_base::error::{Error, Result};
@@ -33,8 +32,8 @@ pub fn save_ply(path: &Path, gaussians: &Gaussians) -> Result<()> {
     })
 }
 
-/// Writes `gaussians` in the [format](Format::of_name) that the file's name says: `.ply`, and with the feature `formats`
-/// also `.compressed.ply`, `.spz`, `.sog` and `.glb`. The file appears when complete.
+/// Writes `gaussians` in the [format](Format::of_name) that the file's name says: `.ply`,
+/// `.compressed.ply`, `.spz`, `.sog` or `.glb`. The file appears when complete.
 ///
 /// All but `.glb` round what they store, `.ply` in the last digits of scales and opacities, and `.compressed.ply` and `.sog`
 /// change the Gaussians' order; the guide's chapter on formats has what that costs.
@@ -47,7 +46,6 @@ pub fn save_ply(path: &Path, gaussians: &Gaussians) -> Result<()> {
 /// cannot hold; [`Error::Io`] if the file can't be written.
 pub fn save(path: &Path, gaussians: &Gaussians) -> Result<u64> {
     let format = saved_format(path)?;
-    #[cfg(feature = "formats")]
     if let Some(writer) = WRITERS.iter().find(|writer| writer.format == format) {
         check(path, gaussians)?;
         let (bytes, clamped) = writer.encode(gaussians)?;
@@ -90,7 +88,6 @@ impl Format {
     /// The endings of names and the formats that they say. Longer endings come first.
     fn written() -> Vec<(&'static str, Self)> {
         let mut written = vec![(".ply", Self::Ply)];
-        #[cfg(feature = "formats")]
         written.extend(WRITERS.iter().map(|writer| (writer.ending, writer.format)));
         written.sort_by_key(|(ending, _)| Reverse(ending.len()));
         written
@@ -185,7 +182,6 @@ mod tests {
         let of = |name: &str| Format::of_name(Path::new(name));
         assert_eq!(of("a/b.PLY"), Some(Format::Ply));
         assert_eq!((of("b.splat"), of("ply"), of("")), (None, None, None));
-        #[cfg(feature = "formats")]
         assert_eq!(
             [
                 of("b.compressed.ply"),

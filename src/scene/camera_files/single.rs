@@ -34,7 +34,7 @@ pub struct SavedCamera {
     /// Row by row.
     world_to_camera: [f64; 16],
     #[serde(default)]
-    projection: Name,
+    projection: Projection,
     #[serde(skip_serializing_if = "Option::is_none")]
     clip_near: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -59,23 +59,12 @@ impl From<&Camera> for SavedCamera {
             cy: Some(camera.cy),
             eye: Some(camera.eye.to_array()),
             world_to_camera: camera.world_to_camera().transpose().to_cols_array(),
-            projection: match camera.projection {
-                Projection::Orthographic => Name::Orthographic,
-                Projection::Perspective => Name::Perspective,
-            },
+            projection: camera.projection,
             clip_near: camera.clip_near,
             clip_far: camera.clip_far,
             near_cut: camera.near_cut,
         }
     }
-}
-
-#[derive(Debug, Clone, PartialEq, Deserialize, Serialize, Default)]
-#[serde(rename_all = "lowercase")]
-enum Name {
-    #[default]
-    Perspective,
-    Orthographic,
 }
 
 pub(super) fn parse(json: &[u8]) -> Result<Camera, String> {
@@ -126,13 +115,9 @@ impl SavedCamera {
             centre: (self.cx, self.cy),
             pose: Pose::WorldToCamera(matrix),
         };
-        let projection = match self.projection {
-            Name::Perspective => Projection::Perspective,
-            Name::Orthographic => Projection::Orthographic,
-        };
         let mut camera = parts
             .camera(what)?
-            .projection(projection)
+            .projection(self.projection)
             .clip_near(self.clip_near)
             .clip_far(self.clip_far)
             .near_cut(self.near_cut);

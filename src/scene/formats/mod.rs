@@ -14,34 +14,13 @@ use std::io::Read;
 use std::path::Path;
 
 pub(super) use self::write::WRITERS;
-use super::assemble::{Assembler, ColumnForm};
+use super::assemble::{Assembler, room};
+use super::failure::Failure;
 use super::load::{Input, Progress};
 use super::{Format, Gaussians, LoadReport, Property, SH_0, SceneFile};
 use crate::placement::Placement;
 use rara_base::counted::counted;
 use rara_base::error::{Error, Result};
-
-/// Why nothing was read.
-enum Failure {
-    /// What is wrong with the file.
-    Format(String),
-    /// There is no memory for this.
-    Memory(String),
-    /// What is wrong with a file beside it.
-    Other(Error),
-}
-
-impl From<String> for Failure {
-    fn from(message: String) -> Self {
-        Self::Format(message)
-    }
-}
-
-impl From<Error> for Failure {
-    fn from(error: Error) -> Self {
-        Self::Other(error)
-    }
-}
 
 /// What a reader makes of a file.
 #[derive(Default)]
@@ -110,20 +89,6 @@ impl FormatOutput {
         }
         self.dropped.sort_unstable();
     }
-}
-
-/// An assembler with room for so many Gaussians, for which the file has bytes.
-fn room(count: u64, sh_degree: u32, stored: ColumnForm) -> std::result::Result<Assembler, Failure> {
-    if count > u64::from(u32::MAX) {
-        return Err(Failure::Format(format!(
-            "{} are more than the {} that can be numbered; split the file",
-            counted(count, "Gaussian"),
-            u32::MAX
-        )));
-    }
-    let assembler = Assembler::with_room(count, sh_degree, Vec::new());
-    let assembler = assembler.ok_or_else(|| Failure::Memory(counted(count, "Gaussian")))?;
-    Ok(assembler.stored(stored))
 }
 
 /// The coefficient of degree 0 that shows a colour channel.
@@ -197,29 +162,20 @@ pub(super) fn read(
     progress: &mut Progress<'_>,
 ) -> Result<(SceneFile, Vec<Property>)> {
     let Input { source, name, .. } = input;
-    let memory = |what: String| {
-        Error::Memory(format!(
-            "{}: no memory for {what}; free some",
-            name.display()
-        ))
-    };
     let total = progress.total();
     let reader = READERS.iter().find(|Reader(is, _)| is(start, total));
     let Reader(_, read) = reader.ok_or_else(|| Error::format(name, unknown(start)))?;
     let mut bytes = Vec::new();
     let room = usize::try_from(total).is_ok_and(|total| bytes.try_reserve_exact(total).is_ok());
     if !room {
-        return Err(memory(format!("its {}", counted(total, "byte"))));
+        return Err(Failure::Memory(format!("its {}", counted(total, "byte"))).of(name));
     }
     source
         .take(total)
         .read_to_end(&mut bytes)
         .map_err(Error::io(name))?;
-    let (made, format) = read(&bytes, input.folder).map_err(|failure| match failure {
-        Failure::Format(message) => Error::format(name, message),
-        Failure::Memory(what) => memory(what),
-        Failure::Other(error) => error,
-    })?;
+    let read = read(&bytes, input.folder);
+    let (made, format) = read.map_err(|failure| failure.of(name))?;
     if let Some(property) = input.properties.first() {
         return Err(Error::format(
             name,

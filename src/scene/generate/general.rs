@@ -5,8 +5,9 @@ use std::f64::consts::{PI, TAU};
 use glam::DVec3;
 
 use super::random::Random;
-use super::spherical::{COEFFICIENTS, Colours};
+use super::spherical::Colours;
 use super::{Builder, Draft, Gaussians, axes_about, pattern, split};
+use crate::harmonics::COEFFICIENTS;
 
 /// Tangential deviation in units of the mean spacing. Below about 0.7 holes show, above 1 the pattern blurs.
 const COVERAGE: f64 = 0.8;

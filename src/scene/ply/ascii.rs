@@ -3,10 +3,10 @@
 use std::io::{BufRead, BufReader, Read};
 
 use super::Progress;
-use super::binary::Failure;
 use super::header::PlyHeader;
 use super::layout::{Field, Layout};
 use crate::assemble::{Assembler, GaussianRow};
+use crate::failure::Failure;
 use rara_base::counted::counted;
 use rara_base::error::shortened;
 

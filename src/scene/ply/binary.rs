@@ -1,6 +1,6 @@
 //! The binary payload, read a few MiB at a time by offsets computed from the header.
 
-use std::io::{self, BufRead, BufReader, ErrorKind, Read, Seek};
+use std::io::{BufRead, BufReader, ErrorKind, Read, Seek};
 
 use ply_rs::ply::{ElementDef, Encoding};
 
@@ -9,21 +9,10 @@ use super::header::PlyHeader;
 use super::layout::{Field, Layout, fixed_size};
 use super::number::Number;
 use crate::assemble::Assembler;
+use crate::failure::Failure;
 
 /// Bytes read at once. A larger chunk gains nothing, a smaller one costs system calls.
 const CHUNK: usize = 4 << 20;
-
-/// Why reading stopped: the operating system, or the file's content.
-pub(super) enum Failure {
-    Io(io::Error),
-    Format(String),
-}
-
-impl From<io::Error> for Failure {
-    fn from(error: io::Error) -> Self {
-        Self::Io(error)
-    }
-}
 
 struct Payload<R> {
     reader: BufReader<R>,

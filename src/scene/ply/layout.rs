@@ -6,7 +6,7 @@ use super::header::PlyHeader;
 use super::number::Number;
 use super::trained::{self, FILTER};
 use crate::Property;
-use crate::assemble::{FIXED, SH, SLOTS};
+use crate::assemble::{FIXED, SH, SLOTS, check_count, degree_of};
 use rara_base::counted::counted;
 use rara_base::error::shortened;
 
@@ -42,26 +42,14 @@ impl<'a> Layout<'a> {
         let at = header.elements.iter().position(|e| e.name == "vertex");
         let at = at.ok_or("the file has no `vertex` element, which holds the Gaussians of a 3DGS .ply; export the scene again")?;
         let vertex = &header.elements[at];
-        if vertex.count as u64 > u64::from(u32::MAX) {
-            return Err(format!(
-                "the header promises {}, more than the {} that can be numbered; split the file",
-                counted(vertex.count, "Gaussian"),
-                u32::MAX
-            ));
-        }
+        check_count(vertex.count as u64)?;
         let rest = count_rest(vertex)?;
-        let sh_degree = match rest {
-            0 => 0,
-            9 => 1,
-            24 => 2,
-            45 => 3,
-            _ => {
-                return Err(format!(
-                    "the file has {rest} f_rest properties; spherical harmonics of degree 0, 1, 2 or 3 have 0, 9, 24 \
-                     or 45, export the scene with one of these"
-                ));
-            }
-        };
+        let sh_degree = degree_of(rest).ok_or_else(|| {
+            format!(
+                "the file has {rest} f_rest properties; spherical harmonics of degree 0, 1, 2 or 3 have 0, 9, 24 or 45, \
+                 export the scene with one of these"
+            )
+        })?;
         let missing: Vec<_> = FIXED
             .iter()
             .copied()

@@ -12,11 +12,11 @@ use std::io::{Read, SeekFrom};
 
 use ply_rs::ply::Encoding;
 
-use self::binary::Failure;
 use self::header::PlyHeader;
 use self::layout::Layout;
 use self::trained::TrainerKind;
 use super::assemble::Assembler;
+use super::failure::Failure;
 use super::load::{Input, Progress, SceneFile};
 use super::{Format, Property};
 use rara_base::counted::counted;
@@ -41,13 +41,6 @@ pub(super) fn read(
     let header = PlyHeader::parse(&start).map_err(format)?;
     drop(start);
 
-    let memory = |count: u64| {
-        Error::Memory(format!(
-            "{}: no memory for {}; free some or split the file",
-            name.display(),
-            counted(count, "Gaussian")
-        ))
-    };
     let left = progress.total().saturating_sub(header.size);
     if packed::is(&header) {
         if let Some(property) = asked.first() {
@@ -63,12 +56,8 @@ pub(super) fn read(
         let start = SeekFrom::Start(header.size);
         source.seek(start).map_err(Error::io(name))?;
         let made = packed::read(source, &header, left, progress);
-        let made = made.map_err(|failure| match failure {
-            packed::Failure::Io(error) => Error::io(name)(error),
-            packed::Failure::Format(message) => format(message),
-            packed::Failure::Memory(count) => memory(count),
-        });
-        let (mut loaded, properties) = made?.finish();
+        let made = made.map_err(|failure| failure.of(name))?;
+        let (mut loaded, properties) = made.finish();
         loaded.format = Format::CompressedPly;
         loaded.says(header.kind.map(|kind| kind == TrainerKind::Antialiased));
         return Ok((loaded, properties));
@@ -77,7 +66,8 @@ pub(super) fn read(
     layout.check_size(header.encoding, left).map_err(format)?;
     let properties = layout.properties.clone();
     let assembler = Assembler::with_room(layout.count, layout.sh_degree, properties);
-    let mut assembler = assembler.ok_or_else(|| memory(layout.count))?;
+    let mut assembler =
+        assembler.ok_or_else(|| Failure::Memory(counted(layout.count, "Gaussian")).of(name))?;
 
     source
         .seek(SeekFrom::Start(header.size))
@@ -86,12 +76,8 @@ pub(super) fn read(
         Encoding::Ascii => ascii::read,
         Encoding::BinaryLittleEndian | Encoding::BinaryBigEndian => binary::read,
     };
-    read(source, left, &header, &layout, &mut assembler, progress).map_err(
-        |failure| match failure {
-            Failure::Io(error) => Error::io(name)(error),
-            Failure::Format(message) => format(message),
-        },
-    )?;
+    read(source, left, &header, &layout, &mut assembler, progress)
+        .map_err(|failure| failure.of(name))?;
     let (mut loaded, mut properties) = assembler.finish();
     let mut antialiased = header.kind.map(|kind| kind == TrainerKind::Antialiased);
     if let Some(at) = properties

@@ -8,27 +8,14 @@ use super::header::PlyHeader;
 use super::layout::{Field, fixed_size};
 use crate::SH_0;
 use crate::assemble::{
-    Assembler, ColumnForm, OPACITY, ROTATION, SCALES, SH, SLOTS, unit_quaternion,
+    Assembler, ColumnForm, OPACITY, ROTATION, SCALES, SH, SLOTS, degree_of, room, unit_quaternion,
 };
+use crate::failure::Failure;
 use crate::load::{Progress, Source};
 use rara_base::counted::counted;
 
 /// Gaussians in a chunk.
 const CHUNK: usize = 256;
-
-/// Why nothing was read.
-pub(super) enum Failure {
-    Io(std::io::Error),
-    Format(String),
-    /// There is no memory for so many Gaussians.
-    Memory(u64),
-}
-
-impl From<String> for Failure {
-    fn from(message: String) -> Self {
-        Self::Format(message)
-    }
-}
 
 /// True for a file of this format.
 pub(super) fn is(header: &PlyHeader) -> bool {
@@ -71,7 +58,7 @@ impl Table {
         let size = stride.saturating_mul(element.count);
         let mut rows = Vec::new();
         rows.try_reserve_exact(size)
-            .map_err(|_| Failure::Memory(element.count as u64))?;
+            .map_err(|_| Failure::Memory(counted(element.count, "element")))?;
         source
             .take(size as u64)
             .read_to_end(&mut rows)
@@ -220,18 +207,12 @@ fn assemble(
     ];
     let packed = vertices.needed(names, "vertex")?;
     let rest = harmonics.map_or(0, |table| table.fields.len());
-    let degree = match rest {
-        0 => 0,
-        9 => 1,
-        24 => 2,
-        45 => 3,
-        _ => {
-            return Err(Failure::Format(format!(
-                "the `sh` element has {}; degree 1, 2 or 3 has 9, 24 or 45, export the scene again",
-                counted(rest, "property")
-            )));
-        }
-    };
+    let degree = degree_of(rest).ok_or_else(|| {
+        format!(
+            "the `sh` element has {}; degree 1, 2 or 3 has 9, 24 or 45, export the scene again",
+            counted(rest, "property")
+        )
+    })?;
     let harmonics = harmonics.filter(|_| degree > 0);
     let columns: Result<Vec<Column>, String> = (0..rest)
         .map(|number| {
@@ -248,18 +229,7 @@ fn assemble(
             counted(vertices.count, "Gaussian")
         )));
     }
-    let count = vertices.count as u64;
-    if count > u64::from(u32::MAX) {
-        return Err(Failure::Format(format!(
-            "the header promises {}, more than the {} that can be numbered; split the file",
-            counted(count, "Gaussian"),
-            u32::MAX
-        )));
-    }
-    let assembler = Assembler::with_room(count, degree, Vec::new());
-    let mut assembler = assembler
-        .ok_or(Failure::Memory(count))?
-        .stored(ColumnForm::LogScales);
+    let mut assembler = room(vertices.count as u64, degree, ColumnForm::LogScales)?;
     for index in 0..vertices.count {
         let [position, rotation, scale, colour] =
             packed.map(|column| vertices.number(index, column) as u32);

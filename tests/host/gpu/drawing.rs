@@ -3,7 +3,7 @@
 use super::*;
 
 /// Draws the left half of an 8 x 8 image, with arguments, corners and colour written in the same command buffer.
-fn draw_half(device: &Device, front: &Shader, bindings: Bindings, indexed: bool) {
+fn draw_half(device: &Device, front: &Shader, bindings: Bindings) {
     let format = vk::Format::R32G32B32A32_SFLOAT;
     let desc = GraphicsDesc {
         name: "square",
@@ -28,7 +28,6 @@ fn draw_half(device: &Device, front: &Shader, bindings: Bindings, indexed: bool)
     let corners = buffer(device, "corners", 32, Location::GpuOnly);
     let paint = buffer(device, "paint", 16, Location::GpuOnly);
     let args = buffer(device, "args", 32, Location::GpuOnly);
-    let indices = buffer(device, "indices", 16, Location::GpuOnly);
     let target = buffer(device, "target", 8 * 8 * 16, Location::Readback);
     let mut timer = Timer::new(device, 2).unwrap();
     let colour = [0.25_f32, 0.5, 0.75, 1.0];
@@ -42,15 +41,13 @@ fn draw_half(device: &Device, front: &Shader, bindings: Bindings, indexed: bool)
                 bytemuck::cast_slice(&[-1.0_f32, -1.0, 0.0, -1.0, -1.0, 1.0, 0.0, 1.0]),
             );
             recorder.update(&paint, 0, bytemuck::cast_slice(&colour));
-            recorder.update(&indices, 0, bytemuck::cast_slice(&[0_u32, 1, 2, 3]));
-            let arguments: &[u32] = match (pipeline.is_mesh(), indexed) {
-                (true, _) => &[1, 1, 1],
-                (false, true) => &[4, 1, 0, 0, 0],
-                (false, false) => &[4, 1, 0, 0],
+            let arguments: &[u32] = match pipeline.is_mesh() {
+                true => &[1, 1, 1],
+                false => &[4, 1, 0, 0],
             };
             recorder.update(&args, 4, bytemuck::cast_slice(arguments));
         });
-        recorder.ready_to_draw(&[&corners, &paint, &args, &indices]);
+        recorder.ready_to_draw(&[&corners, &paint, &args]);
         // SAFETY: as above; the drawer lives inside the rendering and the buffers were made ready to draw.
         unsafe {
             image.begin_rendering(cmd, [0.0; 4]);
@@ -60,8 +57,6 @@ fn draw_half(device: &Device, front: &Shader, bindings: Bindings, indexed: bool)
                 let buffers = [&corners, &paint];
                 if pipeline.is_mesh() {
                     drawer.draw_mesh_tasks_indirect(&pipeline, &buffers, &[], &args, 4);
-                } else if indexed {
-                    drawer.draw_indexed_indirect(&pipeline, &buffers, &[], &indices, &args, 4);
                 } else {
                     drawer.draw_indirect(&pipeline, &buffers, &[], &args, 4);
                 }
@@ -92,8 +87,7 @@ fn draw_half(device: &Device, front: &Shader, bindings: Bindings, indexed: bool)
 fn draws_read_what_the_same_command_buffer_wrote() {
     clean(|device| {
         for &bindings in all_bindings(device) {
-            draw_half(device, &VERTEX, bindings, false);
-            draw_half(device, &VERTEX, bindings, true);
+            draw_half(device, &VERTEX, bindings);
         }
     });
 }
@@ -103,7 +97,7 @@ fn mesh_shaders_draw_or_are_refused_with_a_reason() {
     clean(|device| {
         if device.support().mesh_shader {
             for &bindings in all_bindings(device) {
-                draw_half(device, &MESH, bindings, false);
+                draw_half(device, &MESH, bindings);
             }
         } else {
             let desc = GraphicsDesc {

@@ -181,37 +181,27 @@ fn read_primitive(
             )));
         }
     }
-    let mut notes = Vec::new();
-    let kernel = extension
-        .get("kernel")
-        .and_then(Value::as_str)
-        .unwrap_or("ellipse");
-    if kernel != "ellipse" {
-        notes.push(format!(
-            "the kernel \"{}\" is drawn as an ellipse",
-            shortened(kernel)
-        ));
-    }
-    let projection = extension
-        .get("projection")
-        .and_then(Value::as_str)
-        .unwrap_or("perspective");
-    if projection != "perspective" {
-        notes.push(format!(
-            "the projection \"{}\" is drawn as perspective",
-            shortened(projection)
-        ));
-    }
-    let space = extension
-        .get("colorSpace")
-        .and_then(Value::as_str)
-        .unwrap_or("srgb_rec709_display");
-    if space != "srgb_rec709_display" {
-        notes.push(format!(
-            "colours of the space \"{}\" are drawn as sRGB",
-            shortened(space)
-        ));
-    }
+    let notes = [
+        ("kernel", "ellipse", "the kernel", "is drawn as an ellipse"),
+        (
+            "projection",
+            "perspective",
+            "the projection",
+            "is drawn as perspective",
+        ),
+        (
+            "colorSpace",
+            "srgb_rec709_display",
+            "colours of the space",
+            "are drawn as sRGB",
+        ),
+    ];
+    let notes = notes
+        .into_iter()
+        .filter_map(|(key, usual, what, is_drawn)| {
+            let found = extension.get(key)?.as_str()?;
+            (found != usual).then(|| format!("{what} \"{}\" {is_drawn}", shortened(found)))
+        });
     let attributes = primitive.get("attributes");
     let count = attribute(attributes, "POSITION")
         .and_then(|number| list(document, "accessors").get(number))
@@ -285,7 +275,7 @@ fn read_primitive(
         }
         made.push(&row);
     }
-    notes.into_iter().for_each(|note| made.report.note(note));
+    notes.for_each(|note| made.report.note(note));
     Ok(made.into())
 }
 

@@ -5,6 +5,7 @@ use serde_json::{Value, json};
 
 use super::super::super::Gaussians;
 use super::super::gltf::{EXTENSION, turn};
+use super::corners;
 use crate::placement::Placement;
 use rara_base::error::{Error, Result};
 
@@ -14,18 +15,7 @@ pub(super) fn encode(gaussians: &Gaussians) -> Result<Vec<u8>> {
     let _all_fit = turned.place(&Placement::new(DVec3::ZERO, turn().inverse(), 1.0)?);
     let count = turned.len();
     let mut parts = Parts::default();
-    let low = turned
-        .positions()
-        .iter()
-        .copied()
-        .reduce(glam::Vec3::min)
-        .unwrap_or_default();
-    let high = turned
-        .positions()
-        .iter()
-        .copied()
-        .reduce(glam::Vec3::max)
-        .unwrap_or_default();
+    let [low, high] = corners(&turned);
     parts.add(
         "POSITION".into(),
         "VEC3",

@@ -6,6 +6,8 @@ mod packed;
 mod sog;
 mod spz;
 
+use glam::Vec3;
+
 use super::super::{Format, Gaussians};
 use rara_base::error::Result;
 
@@ -88,18 +90,7 @@ impl Ranges {
 /// The Gaussians' numbers along a space-filling curve through their centres, so that neighbours in a file are alike.
 fn along_a_curve(gaussians: &Gaussians) -> Vec<u32> {
     let all = gaussians.positions();
-    let low = all
-        .iter()
-        .copied()
-        .reduce(glam::Vec3::min)
-        .unwrap_or_default()
-        .as_dvec3();
-    let high = all
-        .iter()
-        .copied()
-        .reduce(glam::Vec3::max)
-        .unwrap_or_default()
-        .as_dvec3();
+    let [low, high] = corners(gaussians).map(|corner| corner.as_dvec3());
     let cells = 1023.0 / (high - low).max(glam::DVec3::splat(f64::MIN_POSITIVE));
     let key = |position: &glam::Vec3| {
         let cell = ((position.as_dvec3() - low) * cells).as_uvec3();
@@ -110,6 +101,14 @@ fn along_a_curve(gaussians: &Gaussians) -> Vec<u32> {
     let mut order: Vec<u32> = (0..all.len() as u32).collect();
     order.sort_by_key(|&index| keys[index as usize]);
     order
+}
+
+/// The corners of the box around all centres with the least and the greatest coordinates.
+fn corners(gaussians: &Gaussians) -> [Vec3; 2] {
+    [Vec3::min, Vec3::max].map(|pick| {
+        let all = gaussians.positions().iter().copied();
+        all.reduce(pick).unwrap_or_default()
+    })
 }
 
 /// A byte of a share from 0 to 1.

@@ -218,7 +218,7 @@ proptest::proptest! {
     fn barriers_are_enough_and_needed(
         buffers in 1_u64..4,
         passes in proptest::collection::vec(
-            proptest::collection::vec((0_u64..12, 0_usize..9), 1..4), 1..7)
+            proptest::collection::vec((0_u64..12, 0..Access::all().count()), 1..4), 1..7)
     ) {
         let names: Vec<Access> = Access::all().collect();
         let mut tracker = Tracker::new(true);

@@ -72,6 +72,11 @@ pub(super) fn between(random: &mut Random, low: f64, high: f64) -> f64 {
     low * (high / low).powf(random.unit())
 }
 
+/// Three such numbers.
+pub(super) fn three_between(random: &mut Random, low: f64, high: f64) -> DVec3 {
+    DVec3::from_array([(); 3].map(|()| between(random, low, high)))
+}
+
 /// An orientation, every one as likely.
 pub(super) fn orientation(random: &mut Random) -> Quat {
     let turn = DQuat::from_axis_angle(random.direction(), random.range(0.0, std::f64::consts::TAU));

@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::make::{
     PLAIN, Setup, any_normal, axes, between, cases, orientation, push, set_colour, strewn,
+    three_between,
 };
 use super::{Case, Regime};
 use rara::Projection;
@@ -34,7 +35,7 @@ pub fn regimes() -> Vec<Regime> {
         Regime::new("camera inside splats", || {
             let inside = |seed: u64| {
                 cases(seed, PLAIN, &any_normal, &|r, _| {
-                    DVec3::from_array([(); 3].map(|()| PLAIN.distance * between(r, 0.1, 2.0)))
+                    PLAIN.distance * three_between(r, 0.1, 2.0)
                 })
             };
             (100..106).flat_map(inside).collect()
@@ -61,7 +62,7 @@ pub fn regimes() -> Vec<Regime> {
             };
             let around = |seed: u64| {
                 cases(seed, flat, &any_normal, &|r, _| {
-                    DVec3::from_array([(); 3].map(|()| PLAIN.distance * between(r, 0.1, 20.0)))
+                    PLAIN.distance * three_between(r, 0.1, 20.0)
                 })
             };
             (100..103).flat_map(around).collect()
@@ -71,9 +72,7 @@ pub fn regimes() -> Vec<Regime> {
                 distance: 0.3,
                 ..PLAIN
             };
-            cases(12, near, &any_normal, &|r, _| {
-                DVec3::from_array([(); 3].map(|()| between(r, 0.002, 0.3)))
-            })
+            cases(12, near, &any_normal, &|r, _| three_between(r, 0.002, 0.3))
         }),
         Regime::new("centres to 3e3 px beside the picture", || beside(1e1)),
         Regime::new("centres to 3e4 px beside the picture", || beside(1e2)),
@@ -109,8 +108,7 @@ fn beside(aside: f64) -> Vec<Case> {
             let turn = random.range(0.0, std::f64::consts::TAU);
             let at = DVec3::new(aside * turn.cos(), aside * turn.sin(), depth);
             let at = case.camera.eye + axes(&case.camera) * at;
-            let scales =
-                DVec3::from_array([(); 3].map(|()| aside * between(&mut random, 0.3, 1.0)));
+            let scales = aside * three_between(&mut random, 0.3, 1.0);
             let turned = orientation(&mut random);
             push(&mut case.scene, at.as_vec3(), scales, turned, 0.7);
             set_colour(&mut case.scene, &mut random);

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::make::{PLAIN, Setup, between, on_surface};
+use super::make::{PLAIN, Setup, on_surface, three_between};
 use super::{Case, Regime};
 use rara::Clip;
 use rara::clip::Expression;
@@ -101,10 +101,7 @@ fn seen(seed: u64, stage: Setup, pixels: [f64; 2], border: &str, region: &str) -
     let mut random = Random::new(seed);
     let parsed = |text: &str| text.parse::<Expression>().expect("a region").clip();
     let (border, clip) = (parsed(border), parsed(region));
-    let shape = |random: &mut Random, px: f64| {
-        let [low, high] = pixels;
-        DVec3::from_array([(); 3].map(|()| px * between(random, low, high)))
-    };
+    let shape = |random: &mut Random, px: f64| px * three_between(random, pixels[0], pixels[1]);
     let mut case = |count: usize, apart: bool| {
         let camera = stage.camera(&mut random);
         let place = |random: &mut Random| on_border(random, stage, &border);

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::make::{PLAIN, Setup, any_normal, between, cases};
+use super::make::{PLAIN, Setup, any_normal, between, cases, three_between};
 use super::{Case, Regime};
 use rara_scene::Random;
 
@@ -13,7 +13,7 @@ pub fn regimes() -> Vec<Regime> {
     vec![
         Regime::new("ordinary splats", || {
             cases(1, PLAIN, &any_normal, &|r, px| {
-                DVec3::from_array([(); 3].map(|()| px * between(r, 0.2, 20.0)))
+                px * three_between(r, 0.2, 20.0)
             })
         }),
         Regime::new("needles, aspect 1e2", || needles(1e2)),
@@ -86,7 +86,7 @@ fn sigma(size: f64) -> Vec<Case> {
 }
 
 fn spread(random: &mut Random, size: f64) -> DVec3 {
-    DVec3::from_array([(); 3].map(|()| size * between(random, 0.1, 1.0)))
+    size * three_between(random, 0.1, 1.0)
 }
 
 fn zeros(zero: [bool; 3]) -> Vec<Case> {

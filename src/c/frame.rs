@@ -127,22 +127,20 @@ pub unsafe extern "C" fn rara_renderer_draw(
     y: f32,
     frame: *const RaraFrame,
 ) -> RaraResult {
-    with_prepared(renderer, cmd, frame, |renderer, frame| {
-        renderer.draw(cmd, [x, y], frame)
-    })
+    draw(renderer, cmd, [x, y], frame, Renderer::draw)
 }
 
 /// Draws a frame that is prepared, by a renderer and into a command buffer that are there.
-fn with_prepared(
+unsafe fn draw(
     renderer: *mut RaraRenderer,
     cmd: vk::CommandBuffer,
+    origin: [f32; 2],
     frame: *const RaraFrame,
-    draw: impl FnOnce(&mut Renderer, &PreparedFrame) -> Result<()>,
+    by: unsafe fn(&mut Renderer, vk::CommandBuffer, [f32; 2], &PreparedFrame) -> Result<()>,
 ) -> RaraResult {
     with(renderer, |renderer| {
         let frame = alive(frame, "frame")?;
-        recording(cmd)?;
-        draw(renderer, frame.prepared()?)
+        by(renderer, recording(cmd)?, origin, frame.prepared()?)
     })
 }
 
@@ -161,9 +159,7 @@ pub unsafe extern "C" fn rara_renderer_draw_depth(
     y: f32,
     frame: *const RaraFrame,
 ) -> RaraResult {
-    with_prepared(renderer, cmd, frame, |renderer, frame| {
-        renderer.draw_depth(cmd, [x, y], frame)
-    })
+    draw(renderer, cmd, [x, y], frame, Renderer::draw_depth)
 }
 
 /// Ends a frame, prepared or not; null is ignored. The memory of a frame that the device works on stays until it is done.

@@ -11,6 +11,8 @@ use rara::{Camera, Error, Result};
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 
+use super::json_kind;
+
 /// The longest file that is read.
 const MOST_BYTES: u64 = 256 << 20;
 
@@ -92,13 +94,7 @@ fn read<T: DeserializeOwned>(path: &Path) -> Result<T> {
     let file = File::open(path).map_err(Error::io(path))?;
     let read = file.take(MOST_BYTES).read_to_end(&mut text);
     read.map_err(Error::io(path))?;
-    let mut json = serde_json::Deserializer::from_slice(&text);
-    let document = serde_path_to_error::deserialize(&mut json).map_err(|error| {
-        Error::format(path, format!("field `{}`: {}", error.path(), error.inner()))
-    })?;
-    json.end()
-        .map_err(|error| Error::format(path, error.to_string()))?;
-    Ok(document)
+    json_kind::parsed(path, &text)
 }
 
 #[cfg(test)]

@@ -1,12 +1,15 @@
-//! What a JSON file is, so that one of another kind than is wanted is named for what it is.
+//! JSON files: how they are read, and what one is, so that one of another kind than is wanted is named for what it is.
 
 use std::path::Path;
 
-use rara::Error;
+use rara::{Error, Result};
+use serde::de::DeserializeOwned;
 use serde_json::Value;
 
 use super::failure::Failure;
-use super::scene_file;
+
+/// The longest list of layers that is read.
+pub(super) const MOST_BYTES: u64 = 16 << 20;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum JsonKind {
@@ -63,13 +66,28 @@ impl JsonKind {
 
 /// True for files that are short enough to be looked at as a whole.
 pub(super) fn is_short(path: &Path) -> bool {
-    std::fs::metadata(path).is_ok_and(|facts| facts.len() <= scene_file::MOST_BYTES)
+    std::fs::metadata(path).is_ok_and(|facts| facts.len() <= MOST_BYTES)
 }
 
 pub(super) fn document(path: &Path) -> Option<Value> {
     let text = is_short(path).then(|| std::fs::read(path).ok()).flatten()?;
-    let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&text);
-    serde_json::from_slice(text).ok()
+    serde_json::from_slice(unmarked(&text)).ok()
+}
+
+/// The document that the text of a file is; an error names the field.
+pub(super) fn parsed<T: DeserializeOwned>(path: &Path, text: &[u8]) -> Result<T> {
+    let mut json = serde_json::Deserializer::from_slice(unmarked(text));
+    let document = serde_path_to_error::deserialize(&mut json).map_err(|error| {
+        Error::format(path, format!("field `{}`: {}", error.path(), error.inner()))
+    })?;
+    json.end()
+        .map_err(|error| Error::format(path, error.to_string()))?;
+    Ok(document)
+}
+
+/// Text without the byte order mark that editors add.
+fn unmarked(text: &[u8]) -> &[u8] {
+    text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text)
 }
 
 #[cfg(test)]

@@ -11,10 +11,8 @@ use rara::scene::Predicate;
 use rara::{Bounds, Clip, Error, Gaussians, Layer, LayerState, Placement, Result, Scene};
 use serde::Deserialize;
 
+use super::json_kind;
 use super::region::Region;
-
-/// The longest list that is read.
-pub(super) const MOST_BYTES: u64 = 16 << 20;
 
 /// A layer that is to be read.
 #[derive(Debug)]
@@ -283,35 +281,22 @@ pub(super) fn is_list(path: &Path) -> bool {
     if NAMES.iter().any(|name| path.ends_with(name)) {
         return false;
     }
-    let is_short = std::fs::metadata(path).is_ok_and(|metadata| metadata.len() <= MOST_BYTES);
-    let text = if is_short {
-        std::fs::read(path).ok()
-    } else {
-        None
-    };
-    let document = text.and_then(|text| {
-        let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&text);
-        serde_json::from_slice::<serde_json::Value>(text).ok()
-    });
-    !document.is_some_and(|document| OF_SCENES.iter().any(|key| document.get(key).is_some()))
+    !json_kind::document(path)
+        .is_some_and(|document| OF_SCENES.iter().any(|key| document.get(key).is_some()))
 }
 
 /// The layers of a scene file, whose paths are relative to its folder.
 pub(super) fn read(path: &Path) -> Result<Vec<LayerEntry>> {
     let format = |message: String| Error::format(path, message);
     let size = std::fs::metadata(path).map_err(Error::io(path))?.len();
-    if size > MOST_BYTES {
+    if size > json_kind::MOST_BYTES {
         return Err(format(format!(
             "{} are too many for a list of layers; name its files one by one",
             super::output::counted(size, "byte")
         )));
     }
     let text = std::fs::read(path).map_err(Error::io(path))?;
-    let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&text);
-    let mut json = serde_json::Deserializer::from_slice(text);
-    let document: SceneJson = serde_path_to_error::deserialize(&mut json)
-        .map_err(|error| format(format!("field `{}`: {}", error.path(), error.inner())))?;
-    json.end().map_err(|error| format(error.to_string()))?;
+    let document: SceneJson = json_kind::parsed(path, &text)?;
     if document.layers.is_empty() {
         return Err(format("it has no layer; name at least one".into()));
     }

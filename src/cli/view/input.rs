@@ -89,10 +89,7 @@ impl Input {
         }
         let shift = self.modifiers.shift_key();
         let action = match logical {
-            Key::Named(key) => match layer(*key) {
-                Some(number) => Action::Layer(Which::Number(number), None),
-                None => named(*key, shift)?,
-            },
+            Key::Named(key) => named(*key, shift)?,
             Key::Character(text) => letter(text)?,
             _ => return None,
         };
@@ -183,6 +180,7 @@ fn named(key: NamedKey, shift: bool) -> Option<Action> {
         }
     };
     let step = if shift { 0.1 } else { 1.0 };
+    let layer = |number| Action::Layer(Which::Number(number), None);
     Some(match key {
         NamedKey::ArrowLeft => arrow(-1.0, 0.0),
         NamedKey::ArrowRight => arrow(1.0, 0.0),
@@ -191,26 +189,19 @@ fn named(key: NamedKey, shift: bool) -> Option<Action> {
         NamedKey::PageUp => Action::Held(GripAction::Step(step)),
         NamedKey::PageDown => Action::Held(GripAction::Step(-step)),
         NamedKey::Tab => Action::OtherWalk,
+        NamedKey::F1 => layer(1),
+        NamedKey::F2 => layer(2),
+        NamedKey::F3 => layer(3),
+        NamedKey::F4 => layer(4),
+        NamedKey::F5 => layer(5),
+        NamedKey::F6 => layer(6),
+        NamedKey::F7 => layer(7),
+        NamedKey::F8 => layer(8),
+        NamedKey::F9 => layer(9),
         NamedKey::F12 => Action::Screenshot(None),
         NamedKey::Escape => Action::Quit,
         _ => return None,
     })
-}
-
-/// The number of the layer that a function key switches.
-fn layer(key: NamedKey) -> Option<usize> {
-    let keys = [
-        NamedKey::F1,
-        NamedKey::F2,
-        NamedKey::F3,
-        NamedKey::F4,
-        NamedKey::F5,
-        NamedKey::F6,
-        NamedKey::F7,
-        NamedKey::F8,
-        NamedKey::F9,
-    ];
-    keys.iter().position(|of| *of == key).map(|at| at + 1)
 }
 
 fn letter(text: &str) -> Option<Action> {

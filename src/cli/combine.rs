@@ -1,6 +1,7 @@
 //! Medians, means and sums over frames.
 
 use rara::{Counts, FrameStats, PassTime};
+use rara_lab::statistics;
 use serde::Serialize;
 
 use super::times;
@@ -85,16 +86,13 @@ pub(super) enum Combine {
 }
 
 impl Combine {
-    pub(super) fn apply(self, mut values: Vec<f64>) -> f64 {
-        let count = values.len();
+    /// What becomes of the values; 0 without any.
+    pub(super) fn apply(self, values: Vec<f64>) -> f64 {
+        let count = values.len().max(1) as f64;
         match self {
-            _ if count == 0 => 0.0,
             Self::Sum => times::sum(values),
-            Self::Mean => times::sum(values) / count as f64,
-            Self::Median => {
-                values.sort_unstable_by(f64::total_cmp);
-                (values[(count - 1) / 2] + values[count / 2]) / 2.0
-            }
+            Self::Mean => times::sum(values) / count,
+            Self::Median => statistics::median(&values).unwrap_or(0.0),
         }
     }
 }

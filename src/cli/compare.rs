@@ -152,14 +152,8 @@ fn map_with_scale(a: &Picture, b: &Picture) -> rara::Result<Picture> {
     let (words, bar) = (map.height + 3 * dot, map.height + 13 * dot);
     let numbers = bar + 10 * dot;
     let mut whole = Picture::filled(width, numbers + 10 * dot, PAPER);
-    let mut put = |part: &Picture, top: u32| {
-        for (row, pixels) in part.pixels.chunks(part.width as usize).enumerate() {
-            let begin = (top as usize + row) * width as usize;
-            whole.pixels[begin..begin + pixels.len()].copy_from_slice(pixels);
-        }
-    };
-    put(&map, 0);
-    put(&maps::scale(width, 8 * dot), bar);
+    maps::put(&mut whole, &map, [0, 0]);
+    maps::put(&mut whole, &maps::scale(width, 8 * dot), [0, bar]);
     let font = (ink::Font::Small, dot.into());
     let mut write = |words: &str, left: f64, top: u32| {
         ink::text(&mut whole, [left, top.into()], words, font, [0; 3]);

@@ -1,6 +1,7 @@
 //! Letters in pictures, for labels.
 
 use std::convert::Infallible;
+use std::ops::Range;
 
 use embedded_graphics::mono_font::MonoTextStyle;
 use embedded_graphics::mono_font::ascii::{FONT_6X10, FONT_8X13, FONT_9X18_BOLD};
@@ -9,14 +10,14 @@ use embedded_graphics::prelude::*;
 use embedded_graphics::text::Text;
 use rara::Picture;
 
-/// Paints a pixel; outside of the picture nothing happens.
-fn paint(picture: &mut Picture, x: i64, y: i64, [r, g, b]: [u8; 3]) {
-    let (Ok(x), Ok(y)) = (u32::try_from(x), u32::try_from(y)) else {
-        return;
-    };
-    if x < picture.width && y < picture.height {
-        let [r, g, b] = [r, g, b].map(|ink| f32::from(ink) / 255.0);
-        picture.pixels[y as usize * picture.width as usize + x as usize] = [r, g, b, 1.0];
+/// Fills columns and rows as far as they are in the picture.
+pub(super) fn fill(picture: &mut Picture, [columns, rows]: [Range<i64>; 2], colour: [u8; 3]) {
+    let [r, g, b] = colour.map(|ink| f32::from(ink) / 255.0);
+    let width = i64::from(picture.width);
+    for y in rows.start.max(0)..rows.end.min(picture.height.into()) {
+        for x in columns.start.max(0)..columns.end.min(width) {
+            picture.pixels[(y * width + x) as usize] = [r, g, b, 1.0];
+        }
     }
 }
 
@@ -84,15 +85,11 @@ impl DrawTarget for Dots<'_> {
                 continue;
             }
             let [left, top] = self.corner;
-            let (left, top) = (
-                left + i64::from(at.x) * self.scale,
-                top + i64::from(at.y) * self.scale,
-            );
-            for y in top..top + self.scale {
-                for x in left..left + self.scale {
-                    paint(self.picture, x, y, self.colour);
-                }
-            }
+            let square = [(left, at.x), (top, at.y)].map(|(corner, dot)| {
+                let begin = corner + i64::from(dot) * self.scale;
+                begin..begin + self.scale
+            });
+            fill(self.picture, square, self.colour);
         }
         Ok(())
     }

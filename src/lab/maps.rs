@@ -72,6 +72,17 @@ pub fn worst_square(a: &Picture, b: &Picture, side: u32) -> Result<[u32; 2]> {
     Ok(best)
 }
 
+/// Puts a part into a picture, its upper left corner at [left, top], as far as there is room.
+pub fn put(whole: &mut Picture, part: &Picture, [left, top]: [u32; 2]) {
+    let left = left.min(whole.width);
+    let count = part.width.min(whole.width - left) as usize;
+    let rows = part.pixels.chunks(part.width.max(1) as usize);
+    for (y, row) in (top..whole.height).zip(rows) {
+        let begin = y as usize * whole.width as usize + left as usize;
+        whole.pixels[begin..begin + count].copy_from_slice(&row[..count]);
+    }
+}
+
 /// A part of a picture, each pixel `scale` pixels wide.
 pub fn magnified(picture: &Picture, [left, top]: [u32; 2], side: u32, scale: u32) -> Picture {
     let mut part = Picture::filled(side * scale, side * scale, [0.0; 4]);

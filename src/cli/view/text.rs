@@ -118,14 +118,15 @@ pub(super) fn bar(text: &str, progress: ProgressBar, of: Type, room: (u32, u32))
     of.write(&mut paper, 0, text, INK);
     let margin = MARGIN * of.dot;
     let track = paper.width.saturating_sub(2 * margin);
-    let along = |share: f64| margin + (share.clamp(0.0, 1.0) * f64::from(track)).round() as u32;
+    let along =
+        |share: f64| i64::from(margin) + (share.clamp(0.0, 1.0) * f64::from(track)).round() as i64;
     let (from, to) = match progress {
         ProgressBar::Share(share) => (0.0, share),
         ProgressBar::Moving(at) => (at * (1.0 + RUNNER) - RUNNER, at * (1.0 + RUNNER)),
     };
-    let rows = height..height + BAR * of.dot;
-    fill(&mut paper, along(0.0)..along(1.0), rows.clone(), TRACK);
-    fill(&mut paper, along(from)..along(to), rows, FILLED);
+    let rows = height.into()..(height + BAR * of.dot).into();
+    ink::fill(&mut paper, [along(0.0)..along(1.0), rows.clone()], TRACK);
+    ink::fill(&mut paper, [along(from)..along(to), rows], FILLED);
     paper
 }
 
@@ -133,20 +134,6 @@ pub(super) fn bar(text: &str, progress: ProgressBar, of: Type, room: (u32, u32))
 fn paper((width, height): (u32, u32), room: (u32, u32)) -> Picture {
     let [r, g, b] = PAPER.map(|v| f32::from(v) / 255.0);
     Picture::filled(width.min(room.0), height.min(room.1), [r, g, b, 1.0])
-}
-
-fn fill(
-    paper: &mut Picture,
-    columns: std::ops::Range<u32>,
-    rows: std::ops::Range<u32>,
-    colour: [u8; 3],
-) {
-    let [r, g, b] = colour.map(|v| f32::from(v) / 255.0);
-    for y in rows.start..rows.end.min(paper.height) {
-        for x in columns.start..columns.end.min(paper.width) {
-            paper.pixels[y as usize * paper.width as usize + x as usize] = [r, g, b, 1.0];
-        }
-    }
 }
 
 /// A text in lines of at most so many columns, broken at blanks, and within words that are longer than a line.

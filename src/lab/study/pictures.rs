@@ -8,6 +8,7 @@ use rara_base::fnv;
 use serde::Serialize;
 
 use crate::cases::Case;
+use crate::maps;
 
 #[derive(Debug, Clone)]
 pub struct StudyOptions {
@@ -105,11 +106,8 @@ impl Drawing<'_> {
         for frame in 0..frames {
             let share = f64::from(frame) / f64::from(frames - 1);
             let step = self.picture(case, settings, size, share)?;
-            let (left, top) = (frame % columns * size, frame / columns * size);
-            for (row, pixels) in step.pixels.chunks_exact(size as usize).enumerate() {
-                let from = (top as usize + row) * all.width as usize + left as usize;
-                all.pixels[from..from + pixels.len()].copy_from_slice(pixels);
-            }
+            let place = [frame % columns * size, frame / columns * size];
+            maps::put(&mut all, &step, place);
         }
         Ok(all)
     }

@@ -7,7 +7,7 @@ use rara::scene;
 use rara::{
     Camera, Clip, ClipOp, Decay, ExactForm, FrameStats, Mode, Picture, Plane, Scene, Settings,
 };
-use rara_lab::frames::in_turn;
+use rara_lab::frames::{self, fresh, in_turn};
 use rara_lab::{maps, measure};
 
 use super::combine::{Combine, combine};
@@ -76,7 +76,7 @@ impl Demo {
 
         memory::check_picture((camera.width, camera.height), 0)?;
         let mut session = Session::open(&self.common.device.meant(), &scene, look.precision.sh)?;
-        let (device, driver, _) = session.about();
+        let (device, driver) = (session.headless.device_name(), session.headless.driver());
         let count = counted(scene.gaussians() as u64, "Gaussian");
         say(format_args!(
             "{device} ({driver}); {count}, {}x{}",
@@ -89,11 +89,11 @@ impl Demo {
             session.warm_up([(&camera, &clip, settings)])?;
         }
         let frames = in_turn(FRAMES..=FRAMES, all.len(), |way, _| {
-            session.one(&camera, &clip, &all[way])
+            fresh(&mut session.headless, &camera, &clip, &all[way])
         })?;
         let mut shots = Vec::new();
         for (settings, frames) in all.into_iter().zip(&frames) {
-            let (picture, _) = session.picture(&camera, &clip, &settings)?;
+            let (picture, _) = frames::picture(&mut session.headless, &camera, &clip, &settings)?;
             shots.push(Shot {
                 mode: settings.mode,
                 settings,
@@ -103,7 +103,7 @@ impl Demo {
         }
         let usual = times::sum(shots.iter().map(|shot| shot.stats.wall_ms)) / shots.len() as f64;
         let compiled = output::compiled(session.first_use_ms(usual), session.has_kept());
-        session.close()?;
+        session.headless.close()?;
         for Shot { mode, picture, .. } in &shots {
             over(picture, PAPER).save(self.output.join(format!("{}.png", name(*mode))))?;
         }

@@ -110,6 +110,7 @@ impl ScenePlace {
     }
 
     fn close(self) -> Result<()> {
-        self.session.map_or(Ok(()), Session::close)
+        self.session
+            .map_or(Ok(()), |session| session.headless.close())
     }
 }

@@ -73,7 +73,7 @@ impl Profile {
     ) -> Result<Session, Failure> {
         let device = device.trace(self.trace.clone()).statistics(self.statistics);
         let session = Session::open(&device, scene, sh)?;
-        if self.statistics && !session.has_statistics() {
+        if self.statistics && !session.headless.device().support().pipeline_statistics {
             output::say("note: this device counts nothing (no pipelineStatisticsQuery)");
         }
         Ok(session)

@@ -288,7 +288,7 @@ impl Render {
         let size = destination.size(sizes)?;
         let mut session = place.open(profile, device.meant(), &scene, sh)?;
         if let Some(order) = destination.order() {
-            order.opened(session.driver());
+            order.opened(session.headless.driver());
         }
         let is_clipped = |one: &PictureJob<Shot>| !one.what.clip.is_everything();
         let clips = loaded.has_clips() || planned.iter().any(is_clipped);
@@ -325,16 +325,16 @@ impl Render {
                 RenderedPicture::from(FrameRecord::new(view, file.as_deref(), plane, measured));
             if file.is_some() {
                 drawn.picture = Some(match shot.cut().filter(|_| slicer.has_cues()) {
-                    None => Pixels::Stored(session.last_stored()?),
+                    None => Pixels::Stored(session.headless.read_back()?),
                     Some(cut) => {
-                        let mut picture = session.last_picture()?;
+                        let mut picture = session.headless.picture()?;
                         slicer.draw_cues(&mut picture, (view, cut, settings))?;
                         Pixels::Decoded(picture)
                     }
                 });
                 if !self.aov.is_empty() {
                     let frame = (&view.camera, clip, settings);
-                    drawn.channels = session.channels(&self.aov, frame)?;
+                    drawn.channels = session.headless.channels(&self.aov, frame)?;
                 }
             }
             Ok(drawn)
@@ -352,7 +352,7 @@ impl Render {
             None if several => report.with_frames(pictures),
             None => report,
         };
-        session.close()?;
+        session.headless.close()?;
         Ok(report.print(self.pictures.answer(), clips, &written.files)?)
     }
 
@@ -372,7 +372,7 @@ impl Render {
             let measured = session.measured_frame(&face.camera, &shot.clip, settings, repeat)?;
             frames.push(FrameRecord::new(&face, file.as_deref(), None, measured));
             if file.is_some() {
-                pictures.push(session.last_picture()?);
+                pictures.push(session.headless.picture()?);
             }
         }
         let picture = || profile.span("panorama", || panorama.assembled(&pictures));

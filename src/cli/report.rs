@@ -196,17 +196,20 @@ impl RenderReport {
         mode: String,
         pictures: &[FrameRecord],
     ) -> Self {
-        let (device, driver, device_bytes) = session.about();
-        let (shape, reason) = session.shape();
-        let scene_bytes = session.scene_bytes();
+        let headless = &session.headless;
+        let device = headless.device();
+        let scene_bytes = headless.scene_bytes();
         let scene = loaded.scene();
         let measured = FrameSummary::all(pictures.iter().map(|picture| &picture.measured));
         let faces = pictures.first().map_or(1, |picture| picture.faces);
         let a_frame = measured.stats.wall_ms / faces as f64;
         Self {
-            device,
-            driver,
-            shape: ShapeReport { shape, reason },
+            device: headless.device_name().to_owned(),
+            driver: headless.driver().to_owned(),
+            shape: ShapeReport {
+                shape: device.shape(),
+                reason: device.shape_reason(),
+            },
             scene: SceneReport {
                 gaussians: scene.gaussians(),
                 sh_degree: scene.sh_degree(),
@@ -232,11 +235,11 @@ impl RenderReport {
             has_kept: session.has_kept(),
             measured,
             memory: Memory {
-                device_bytes,
+                device_bytes: headless.device_bytes(),
                 scene_bytes,
                 scene_bytes_per_gaussian: scene_bytes as f64 / scene.gaussians().max(1) as f64,
                 peak_rss_bytes: peak_rss_bytes(),
-                purposes: session.memory_by_name(),
+                purposes: device.memory_by_name(),
             },
             frames: Vec::new(),
             mean: None,

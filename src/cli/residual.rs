@@ -1,6 +1,7 @@
 //! How far a baked scene's pictures are from those of the exact cut.
 
 use rara::{Camera, Clip, HeadlessDesc, Mode, Picture, Scene, Settings, ShFormat};
+use rara_lab::frames;
 use rara_lab::measure::{self, Comparison};
 use serde::Serialize;
 
@@ -42,14 +43,20 @@ pub(super) fn residual(
     let mut pictures = Vec::new();
     for (done, camera) in cameras.iter().enumerate() {
         progress.update(done as u64, 2 * cameras.len() as u64);
-        let mut picture = |mode| session.picture(camera, clip, &settings(mode));
+        let mut picture =
+            |mode| frames::picture(&mut session.headless, camera, clip, &settings(mode));
         pictures.push([picture(Mode::Exact)?.0, picture(Mode::Hard)?.0]);
     }
-    session.reload(baked, ShFormat::Float)?;
+    session.headless.load_as(baked, ShFormat::Float)?;
     let (mut of_baked, mut of_hard, mut views) = (Vec::new(), Vec::new(), Vec::new());
     for (done, (camera, [exact, hard])) in cameras.iter().zip(pictures).enumerate() {
         progress.update((cameras.len() + done) as u64, 2 * cameras.len() as u64);
-        let (drawn, _) = session.picture(camera, &Clip::default(), &settings(Mode::None))?;
+        let (drawn, _) = frames::picture(
+            &mut session.headless,
+            camera,
+            &Clip::default(),
+            &settings(Mode::None),
+        )?;
         let compare = |picture: &Picture| measure::compare(picture, &exact);
         let (baked, hard) = (compare(&drawn)?, compare(&hard)?);
         views.push(ResidualView {
@@ -61,7 +68,7 @@ pub(super) fn residual(
         of_hard.push(hard);
     }
     let compiled = output::compiled(session.first_use_ms(0.0), session.has_kept());
-    session.close()?;
+    session.headless.close()?;
     Ok(Residual {
         compiled,
         baked: over_all(&of_baked).into(),

@@ -5,11 +5,7 @@
 
 use std::time::{Duration, Instant};
 
-use rara::gpu::DeviceShape;
-use rara::{
-    Aov, Camera, Channel, Clip, FrameStats, Headless, HeadlessDesc, Picture, Result, Scene,
-    Settings, ShFormat, StoredPicture,
-};
+use rara::{Camera, Clip, Headless, HeadlessDesc, Result, Scene, Settings, ShFormat};
 
 use rara_lab::frames::fresh;
 
@@ -18,7 +14,7 @@ use super::output::Compiling;
 use super::process;
 
 pub(super) struct Session {
-    headless: Headless,
+    pub(super) headless: Headless,
     /// Times from recording to the picture of the frames that are not measured, milliseconds.
     first_ms: Vec<f64>,
 }
@@ -95,9 +91,8 @@ impl Session {
         let most = match repeat {
             Repeat::Unmeasured => return self.frame(camera, clip, settings, 1),
             Repeat::Following => {
-                return Ok(FrameSummary::from_frames(&[
-                    self.next_frame(camera, clip, settings)?
-                ]));
+                let frame = self.headless.render(camera, clip, settings)?;
+                return Ok(FrameSummary::from_frames(&[frame]));
             }
             Repeat::Exactly(most) | Repeat::UpTo(most) => most,
         };
@@ -107,17 +102,12 @@ impl Session {
         let begin = Instant::now();
         let mut frames = Vec::new();
         for _ in 0..most {
-            frames.push(self.one(camera, clip, settings)?);
+            frames.push(fresh(&mut self.headless, camera, clip, settings)?);
             if matches!(repeat, Repeat::UpTo(_)) && begin.elapsed() > PATIENCE {
                 break;
             }
         }
         Ok(FrameSummary::from_frames(&frames))
-    }
-
-    /// Uploads the scene once more, its spherical harmonics stored in another way.
-    pub(super) fn reload(&mut self, scene: &Scene<'_>, sh: ShFormat) -> Result<()> {
-        self.headless.load_as(scene, sh)
     }
 
     /// Gives the layers the clips that they have in a scene of the same layers.
@@ -128,16 +118,6 @@ impl Session {
             .try_for_each(|(index, clip)| self.headless.set_layer_clip(index, clip))
     }
 
-    /// Renders a frame that follows the one before and takes over what stays the same.
-    pub(super) fn next_frame(
-        &mut self,
-        camera: &Camera,
-        clip: &Clip,
-        settings: &Settings,
-    ) -> Result<FrameStats> {
-        self.headless.render(camera, clip, settings)
-    }
-
     /// Renders the frame `repeat` times from nothing.
     pub(super) fn frame(
         &mut self,
@@ -146,86 +126,9 @@ impl Session {
         settings: &Settings,
         repeat: u32,
     ) -> Result<FrameSummary> {
-        let frames = (0..repeat).map(|_| self.one(camera, clip, settings));
+        let frames = (0..repeat).map(|_| fresh(&mut self.headless, camera, clip, settings));
         Ok(FrameSummary::from_frames(
             &frames.collect::<Result<Vec<_>>>()?,
         ))
-    }
-
-    /// Renders a frame that takes over nothing.
-    pub(super) fn one(
-        &mut self,
-        camera: &Camera,
-        clip: &Clip,
-        settings: &Settings,
-    ) -> Result<FrameStats> {
-        fresh(&mut self.headless, camera, clip, settings)
-    }
-
-    pub(super) fn picture(
-        &mut self,
-        camera: &Camera,
-        clip: &Clip,
-        settings: &Settings,
-    ) -> Result<(Picture, FrameStats)> {
-        let stats = self.one(camera, clip, settings)?;
-        Ok((self.last_picture()?, stats))
-    }
-
-    /// Channels beside the colours of a frame of the scene that is loaded.
-    pub(super) fn channels(
-        &mut self,
-        aovs: &[Aov],
-        frame: (&Camera, &Clip, &Settings),
-    ) -> Result<Vec<Channel>> {
-        self.headless.channels(aovs, frame)
-    }
-
-    pub(super) fn last_picture(&mut self) -> Result<Picture> {
-        self.headless.picture()
-    }
-
-    /// The same, for a thread to decode.
-    pub(super) fn last_stored(&mut self) -> Result<StoredPicture> {
-        self.headless.read_back()
-    }
-
-    /// Frees everything; an error is what the validation layer has reported about it.
-    pub(super) fn close(self) -> Result<()> {
-        self.headless.close()
-    }
-
-    /// True when the device counts what the stages do.
-    pub(super) fn has_statistics(&self) -> bool {
-        self.headless.device().support().pipeline_statistics
-    }
-
-    /// Device memory by what it is for, the largest first.
-    pub(super) fn memory_by_name(&self) -> Vec<rara::gpu::NamedBytes> {
-        self.headless.device().memory_by_name()
-    }
-
-    pub(super) fn scene_bytes(&self) -> u64 {
-        self.headless.scene_bytes()
-    }
-
-    /// The kind of machine that pipelines were chosen for, and the reason.
-    pub(super) fn shape(&self) -> (DeviceShape, &'static str) {
-        let device = self.headless.device();
-        (device.shape(), device.shape_reason())
-    }
-
-    pub(super) fn driver(&self) -> &str {
-        self.headless.driver()
-    }
-
-    /// Device name, driver, and device memory in use.
-    pub(super) fn about(&self) -> (String, String, u64) {
-        let headless = &self.headless;
-        (
-            headless.device_name().to_owned(),
-            headless.driver().to_owned(),
-            headless.device_bytes(),
-        )
     }
 }

@@ -5,6 +5,7 @@ use rara::scene::cross_section;
 use rara::{
     Clip, Cue, Cues, Gaussians, HeadlessDesc, Layer, Picture, Plane, Raster, Scene, Settings, Show,
 };
+use rara_lab::frames;
 
 use super::combine::FrameSummary;
 use super::failure::Failure;
@@ -100,7 +101,9 @@ impl<'a> Slicer<'a> {
         repeat: Repeat,
     ) -> Result<FrameSummary, Failure> {
         let flat = self.cross_sections(&cut.plane);
-        session.reload(&self.flat_scene(&flat), settings.precision.sh)?;
+        session
+            .headless
+            .load_as(self.flat_scene(&flat), settings.precision.sh)?;
         let shown = settings.show(Show::Mean);
         Ok(session.measured_frame(&view.camera, &cut.rest, &shown, repeat)?)
     }
@@ -119,7 +122,7 @@ impl<'a> Slicer<'a> {
         let sh = settings.precision.sh;
         let mut session = match self.session.take() {
             Some(mut session) => {
-                session.reload(&scene, sh)?;
+                session.headless.load_as(&scene, sh)?;
                 session
             }
             None => Session::open(&self.device, &scene, sh)?,
@@ -129,7 +132,7 @@ impl<'a> Slicer<'a> {
             .show(Show::Mean)
             .raster(Raster::Auto)
             .background(None);
-        let (slice, _) = session.picture(&view.camera, &cut.rest, &shown)?;
+        let (slice, _) = frames::picture(&mut session.headless, &view.camera, &cut.rest, &shown)?;
         self.session = Some(session);
         Ok(picture.draw_cues(&slice, &cues)?)
     }
@@ -160,6 +163,7 @@ impl<'a> Slicer<'a> {
 
     /// Frees what was opened for cues.
     pub(super) fn close(self) -> Result<(), Failure> {
-        self.session.map_or(Ok(()), |session| Ok(session.close()?))
+        self.session
+            .map_or(Ok(()), |session| Ok(session.headless.close()?))
     }
 }

@@ -180,7 +180,7 @@ impl Sweep {
         memory::check_picture(size, 0)?;
         let mut session = place.open(profile, device.meant(), &scene, sh)?;
         if let Some(order) = destination.order() {
-            order.opened(session.driver());
+            order.opened(session.headless.driver());
         }
         let mut clip_of = |index| -> rara::Result<Clip> {
             shapes.push(moving.at(position(range, index, self.frames))?);
@@ -203,11 +203,11 @@ impl Sweep {
             let measured = if self.independent || self.repeat > 1 {
                 session.frame(&camera, &clip, settings, self.repeat)?
             } else {
-                FrameSummary::from_frames(&[session.next_frame(&camera, &clip, settings)?])
+                FrameSummary::from_frames(&[session.headless.render(&camera, &clip, settings)?])
             };
             let plane = moving.plane(position(range, index, self.frames))?;
             let frame = FrameRecord::new(&view, file, plane.as_ref(), measured);
-            let stored = file.map(|_| session.last_stored()).transpose()?;
+            let stored = file.map(|_| session.headless.read_back()).transpose()?;
             Ok(RenderedPicture {
                 picture: stored.map(Pixels::Stored),
                 ..frame.into()
@@ -220,7 +220,7 @@ impl Sweep {
         let mode = name(settings.mode);
         let report = RenderReport::new(&session, &loaded, size, mode, &written.pictures);
         let report = report.with_frames(written.pictures).with_mean();
-        session.close()?;
+        session.headless.close()?;
         Ok(report.print(self.pictures.answer(), true, &written.files)?)
     }
 }

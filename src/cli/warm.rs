@@ -5,6 +5,7 @@ use glam::DVec3;
 use rara::clip::Expression;
 use rara::scene::{Bounds, Kind, generate};
 use rara::{Aov, Camera, Clip, Error, Mode, Raster, Scene, Settings, ShFormat};
+use rara_lab::frames::fresh;
 
 use super::failure::Failure;
 use super::output::{ProgressLine, say};
@@ -49,8 +50,8 @@ impl Warm {
         let mut progress = ProgressLine::new("compiling shaders");
         for (done, (stored, clip, settings)) in frames.iter().enumerate() {
             progress.update(done as u64, frames.len() as u64 + 1);
-            session.reload(&scene, *stored)?;
-            match session.one(&camera, clip, settings) {
+            session.headless.load_as(&scene, *stored)?;
+            match fresh(&mut session.headless, &camera, clip, settings) {
                 // A device without mesh shaders, say, has none to compile.
                 Err(Error::Device(why)) if settings.raster != Raster::Auto => {
                     say(format_args!("note: {why}"));
@@ -58,15 +59,15 @@ impl Warm {
                 drawn => drop(drawn?),
             }
         }
-        session.reload(&scene, sh)?;
+        session.headless.load_as(&scene, sh)?;
         for text in CLIPS {
             let clip = clip(text)?;
             let frame = (&camera, &clip, &usual);
-            session.channels(Aov::value_variants(), frame)?;
+            session.headless.channels(Aov::value_variants(), frame)?;
         }
         drop(progress);
         let (seconds, kept) = (session.first_use_ms(0.0) / 1e3, session.has_kept());
-        session.close()?;
+        session.headless.close()?;
         let before = if kept {
             "; an earlier run had kept some"
         } else {

@@ -1,20 +1,16 @@
 //! nerfstudio trains in a world of its own, which it turns, moves and scales: `dataparser_transforms.json` says how. Cameras of
 //! its `transforms.json` stand in the world before that, and are brought to where the Gaussians are.
 
-use std::fs::File;
-use std::io::Read;
 use std::path::Path;
 
 use glam::{DMat3, DVec3};
 use rara::camera_files::NamedCamera;
 use rara::{Camera, Error, Result};
+use rara_base::json;
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 
 use super::json_kind;
-
-/// The longest file that is read.
-const MOST_BYTES: u64 = 256 << 20;
 
 /// Three rows of a rigid matrix.
 type Rows = [[f64; 4]; 3];
@@ -90,11 +86,7 @@ fn rigid(rows: &Rows) -> Option<(DMat3, DVec3)> {
 }
 
 fn read<T: DeserializeOwned>(path: &Path) -> Result<T> {
-    let mut text = Vec::new();
-    let file = File::open(path).map_err(Error::io(path))?;
-    let read = file.take(MOST_BYTES).read_to_end(&mut text);
-    read.map_err(Error::io(path))?;
-    json_kind::parsed(path, &text)
+    json_kind::parsed(path, &json::read(path, "transforms")?)
 }
 
 #[cfg(test)]

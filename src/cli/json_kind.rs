@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use rara::{Error, Result};
+use rara_base::json::bare;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
@@ -71,23 +72,18 @@ pub(super) fn is_short(path: &Path) -> bool {
 
 pub(super) fn document(path: &Path) -> Option<Value> {
     let text = is_short(path).then(|| std::fs::read(path).ok()).flatten()?;
-    serde_json::from_slice(unmarked(&text)).ok()
+    serde_json::from_slice(bare(&text)).ok()
 }
 
 /// The document that the text of a file is; an error names the field.
 pub(super) fn parsed<T: DeserializeOwned>(path: &Path, text: &[u8]) -> Result<T> {
-    let mut json = serde_json::Deserializer::from_slice(unmarked(text));
+    let mut json = serde_json::Deserializer::from_slice(bare(text));
     let document = serde_path_to_error::deserialize(&mut json).map_err(|error| {
         Error::format(path, format!("field `{}`: {}", error.path(), error.inner()))
     })?;
     json.end()
         .map_err(|error| Error::format(path, error.to_string()))?;
     Ok(document)
-}
-
-/// Text without the byte order mark that editors add.
-fn unmarked(text: &[u8]) -> &[u8] {
-    text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text)
 }
 
 #[cfg(test)]

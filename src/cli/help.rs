@@ -31,7 +31,6 @@ pub(super) fn command() -> Command {
         .display_order(1000);
     let command = Cli::command()
         .disable_help_flag(true)
-        .disable_help_subcommand(true)
         .mut_subcommands(|part| {
             // What a command writes comes first, and the rest as it is defined.
             let mut order = 0;
@@ -140,6 +139,8 @@ impl Help {
 /// A page with all that is to be said of flags.
 fn page(flags: Vec<Arg>) -> Command {
     Command::new("page")
+        .version(env!("CARGO_PKG_VERSION")) // which a flag among them prints
+        .disable_version_flag(true)
         .disable_help_flag(true)
         .max_term_width(100)
         .help_template("{all-args}")

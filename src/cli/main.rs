@@ -88,6 +88,7 @@ use failure::Failure;
     name = "rara",
     version,
     propagate_version = true,
+    disable_help_subcommand = true, // there is one of our own
     arg_required_else_help = true,
     max_term_width = 100
 )]

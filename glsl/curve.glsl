@@ -74,15 +74,26 @@ struct CurveSamples {
     bool is_one; // whether a single z is the weight's at each of them
 };
 
-CurveSamples sampled(CurveSource source, float extent) {
-    CurveSamples z;
-    z.is_one = true;
-    z.centre = exact_z(source, vec2(0.0), z.is_one);
-    for (uint ring = 0u; ring < CURVE_RINGS; ring++) {
+const uint FITTED_RINGS = 2u;
+
+void sample_rings(CurveSource source, uint first, uint end, float extent, inout CurveSamples z) {
+    for (uint ring = first; ring < end; ring++) {
         for (uint step = 0u; step < CURVE_STEPS; step++) {
             z.at[ring * CURVE_STEPS + step] = exact_z(source, curve_radius(ring, extent) * curve_direction(ring, step), z.is_one);
         }
     }
+}
+
+// The samples that are looked at first: what is fitted, and of a surface that bends the contour, where it may be crossed twice.
+uint first_rings(CurveSource source) {
+    return COMBINED && source.bends ? FITTED_RINGS + 1u : FITTED_RINGS;
+}
+
+CurveSamples first_samples(CurveSource source, float extent) {
+    CurveSamples z;
+    z.is_one = true;
+    z.centre = exact_z(source, vec2(0.0), z.is_one);
+    sample_rings(source, 0u, first_rings(source), extent, z);
     return z;
 }
 
@@ -166,6 +177,22 @@ float exact_change(CurveSamples z, uint outwards, uint step) {
     float inside = outwards == 0u ? z.centre : z.at[CURVE_OUTWARDS[outwards - 1u] * CURVE_STEPS + step];
     float outside = outwards + 1u == CURVE_RINGS ? here : z.at[CURVE_OUTWARDS[outwards + 1u] * CURVE_STEPS + step];
     return max(max(abs(next - here), abs(last - here)), max(abs(inside - here), abs(outside - here)));
+}
+
+// True when a fit is close enough on the first rings. What it leaves grows with the third or fourth power of the radius; weighted by
+// alpha, that is most on the rings that are fitted, between which the factors of the fit balance it.
+bool is_close(Curve curve, CurveSource source, CurveSamples z, float opacity, float extent) {
+    float error = z.is_one ? 0.0 : 1.0;
+    for (uint ring = 0u; ring < first_rings(source); ring++) {
+        float r = curve_radius(ring, extent);
+        float alpha = opacity * exp(-0.5 * r * r);
+        for (uint step = 0u; step < CURVE_STEPS; step++) {
+            // A difference that is no number has to count.
+            float apart = alpha * abs(curve_z(curve, r * curve_direction(ring, step)) - z.at[ring * CURVE_STEPS + step]);
+            error = apart <= error ? error : apart;
+        }
+    }
+    return 0.4 * error <= 0.75 * CURVE_TOLERANCE;
 }
 
 // True when no pixel's alpha differs by more than CURVE_TOLERANCE from the exact form's.

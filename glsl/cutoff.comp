@@ -52,11 +52,15 @@ void write_carried(uint base, vec3 linear, vec3 curvature) {
 // Writes the weight of one surface as a polynomial, if one is as good as the exact form.
 bool write_curve(uint base, CurveSource source, float opacity) {
     float extent = opacity_extent(opacity);
-    CurveSamples samples = sampled(source, extent);
+    CurveSamples samples = first_samples(source, extent);
     Curve square;
     Curve quartic;
     fitted(samples, square, quartic);
-    if (is_good(square, samples, opacity, extent)) {
+    bool is_settled = is_close(square, source, samples, opacity, extent);
+    if (!is_settled) {
+        sample_rings(source, first_rings(source), CURVE_RINGS, extent, samples);
+    }
+    if (is_settled || is_good(square, samples, opacity, extent)) {
         vec3 linear;
         vec3 curvature;
         in_pixels(square, source.conic, linear, curvature);

@@ -163,8 +163,10 @@ Seen load(uint number, vec2 tile_middle, out Record record) {
     if (CLIP_MODE == MODE_EXACT && abs(splat.linear.x) < Z_RANGE) {
         splat.curvature = SPLAT_CURVATURE(number).xyz;
     }
-    if (CLIP_MODE >= MODE_RARA && SHOW != SHOW_WEIGHT && splat.linear.x < Z_RANGE) {
+    if (CLIP_MODE >= MODE_RARA) {
         record = record_of(splat.linear);
+    }
+    if (CLIP_MODE >= MODE_RARA && SHOW != SHOW_WEIGHT && splat.linear.x < Z_RANGE) {
         uint side = tile_side(splat.linear, splat.curvature, record, splat.centre_conic, splat.conic_opacity.x, tile_middle);
         splat.linear.x = side == SIDE_VISIBLE ? Z_WHOLE : side == SIDE_INVISIBLE ? Z_CUT_AWAY : splat.linear.x;
     }

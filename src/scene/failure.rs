@@ -34,8 +34,8 @@ impl From<Error> for Failure {
 }
 
 impl Failure {
-    /// The error about a file of this name.
-    pub(super) fn of(self, name: &Path) -> Error {
+    /// The error that it is in a file of this name.
+    pub(super) fn error_in(self, name: &Path) -> Error {
         match self {
             Self::Io(error) => Error::io(name)(error),
             Self::Format(message) => Error::format(name, message),

@@ -168,14 +168,14 @@ pub(super) fn read(
     let mut bytes = Vec::new();
     let room = usize::try_from(total).is_ok_and(|total| bytes.try_reserve_exact(total).is_ok());
     if !room {
-        return Err(Failure::Memory(format!("its {}", counted(total, "byte"))).of(name));
+        return Err(Failure::Memory(format!("its {}", counted(total, "byte"))).error_in(name));
     }
     source
         .take(total)
         .read_to_end(&mut bytes)
         .map_err(Error::io(name))?;
     let read = read(&bytes, input.folder);
-    let (made, format) = read.map_err(|failure| failure.of(name))?;
+    let (made, format) = read.map_err(|failure| failure.error_in(name))?;
     if let Some(property) = input.properties.first() {
         return Err(Error::format(
             name,

@@ -56,7 +56,7 @@ pub(super) fn read(
         let start = SeekFrom::Start(header.size);
         source.seek(start).map_err(Error::io(name))?;
         let made = packed::read(source, &header, left, progress);
-        let made = made.map_err(|failure| failure.of(name))?;
+        let made = made.map_err(|failure| failure.error_in(name))?;
         let (mut loaded, properties) = made.finish();
         loaded.format = Format::CompressedPly;
         loaded.says(header.kind.map(|kind| kind == TrainerKind::Antialiased));
@@ -66,8 +66,8 @@ pub(super) fn read(
     layout.check_size(header.encoding, left).map_err(format)?;
     let properties = layout.properties.clone();
     let assembler = Assembler::with_room(layout.count, layout.sh_degree, properties);
-    let mut assembler =
-        assembler.ok_or_else(|| Failure::Memory(counted(layout.count, "Gaussian")).of(name))?;
+    let mut assembler = assembler
+        .ok_or_else(|| Failure::Memory(counted(layout.count, "Gaussian")).error_in(name))?;
 
     source
         .seek(SeekFrom::Start(header.size))
@@ -77,7 +77,7 @@ pub(super) fn read(
         Encoding::BinaryLittleEndian | Encoding::BinaryBigEndian => binary::read,
     };
     read(source, left, &header, &layout, &mut assembler, progress)
-        .map_err(|failure| failure.of(name))?;
+        .map_err(|failure| failure.error_in(name))?;
     let (mut loaded, mut properties) = assembler.finish();
     let mut antialiased = header.kind.map(|kind| kind == TrainerKind::Antialiased);
     if let Some(at) = properties

@@ -28,8 +28,7 @@ void main() {
     uint place = run.before.x;
     for (uint block = run.bounds.x; block < run.bounds.y; block++) {
         if (differs(block)) {
-            bool is_in_view = push.params.stage == 1u && (sides.at[block] & WHOLLY_IN_VIEW) != 0u;
-            block_list.at[place++] = is_in_view ? block | LISTED_IN_VIEW : block;
+            block_list.at[place++] = block | (sides.at[block] & WHOLLY_IN_VIEW);
         }
     }
     if (run.is_last) {

@@ -78,11 +78,11 @@ void main() {
     uint group = LINEAR_GROUP;
     bool is_block = group < counts.at[0].classify_groups.w;
     uint entry = is_block ? block_list.at[group] : 0u;
-    uint block = entry & ~LISTED_IN_VIEW;
+    uint block = entry & ~WHOLLY_IN_VIEW;
     enter_layer_of_block(block);
     uint side = SIDE_CULLED;
     if (is_block && local < block_length(block)) {
-        side = classify(block, local, (entry & LISTED_IN_VIEW) != 0u);
+        side = classify(block, local, (entry & WHOLLY_IN_VIEW) != 0u);
     }
     find_masks(side == SIDE_VISIBLE ? 1u : side == SIDE_CUTOFF ? 2u : side == SIDE_INVISIBLE ? 4u : 0u);
     if (is_block && local < WORDS) {

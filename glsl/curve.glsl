@@ -50,7 +50,7 @@ float exact_z(CurveSource source, vec2 uv, inout bool is_one) {
 }
 
 // There are eight samples on each of five rings around the centre, every other ring turned by half a step. The fit uses
-// the first two rings; all of them are checked.
+// the first two rings. The others are checked where it is not close on the first.
 const uint CURVE_STEPS = 8u;
 const uint CURVE_RINGS = 5u;
 const uint CURVE_SAMPLES = CURVE_RINGS * CURVE_STEPS;
@@ -182,17 +182,16 @@ float exact_change(CurveSamples z, uint outwards, uint step) {
 // True when a fit is close enough on the first rings. What it leaves grows with the third or fourth power of the radius; weighted by
 // alpha, that is most on the rings that are fitted, between which the factors of the fit balance it.
 bool is_close(Curve curve, CurveSource source, CurveSamples z, float opacity, float extent) {
-    float error = z.is_one ? 0.0 : 1.0;
+    bool close = z.is_one;
     for (uint ring = 0u; ring < first_rings(source); ring++) {
         float r = curve_radius(ring, extent);
         float alpha = opacity * exp(-0.5 * r * r);
         for (uint step = 0u; step < CURVE_STEPS; step++) {
-            // A difference that is no number has to count.
-            float apart = alpha * abs(curve_z(curve, r * curve_direction(ring, step)) - z.at[ring * CURVE_STEPS + step]);
-            error = apart <= error ? error : apart;
+            float fit = curve_z(curve, r * curve_direction(ring, step));
+            close = close && 0.4 * alpha * abs(fit - z.at[ring * CURVE_STEPS + step]) <= 0.75 * CURVE_TOLERANCE;
         }
     }
-    return 0.4 * error <= 0.75 * CURVE_TOLERANCE;
+    return close;
 }
 
 // True when no pixel's alpha differs by more than CURVE_TOLERANCE from the exact form's.

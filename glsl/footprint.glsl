@@ -78,7 +78,7 @@ mat3 half_axes(Gaussian gaussian) {
     return mat3(turn[0] * gaussian.scale.x, turn[1] * gaussian.scale.y, turn[2] * gaussian.scale.z);
 }
 
-// What a footprint knows of the Gaussian before it is projected.
+// Makes a footprint without what projection finds.
 Footprint unprojected(Gaussian gaussian) {
     Footprint f;
     f.relative = eye_relative(gaussian.position_opacity.xyz);

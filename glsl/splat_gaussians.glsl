@@ -1,5 +1,5 @@
-// What the buffer `splat_gaussians` holds: the Gaussian of each splat, and, where the clip cuts any, behind room for as many as
-// there are Gaussians the numbers of those that are cut, among the cut ones.
+// The buffer `splat_gaussians` holds the Gaussian of each splat, and, where the clip cuts any, behind room for as many as there are
+// Gaussians the numbers of those that are cut, among the cut ones.
 #ifndef RARA_SPLAT_GAUSSIANS
 #define RARA_SPLAT_GAUSSIANS
 #include "frame.glsl"

@@ -210,7 +210,7 @@ const uint SURFACE_PLANE = 0u;
 const uint SURFACE_QUADRIC = 1u;
 const uint OP_AND = 0u;
 const uint OP_OR = 1u;
-// By their operators.
+// The surfaces combine by their operators.
 const uint OP_PARTS = 2u;
 const uint OPERATOR_SHIFT = 5u;
 // What a pixel shows of its splats.
@@ -219,7 +219,7 @@ const uint SHOW_WEIGHT = 1u;
 const uint SHOW_COUNT = 2u;
 const uint SHOW_MEAN = 3u;
 const uint SHOW_STRONGEST = 4u;
-// What splats are coloured in.
+// The colours that splats get.
 const uint COLOURS_SCENE = 0u;
 const uint COLOURS_NUMBERS = 1u;
 const uint COLOURS_NORMALS = 2u;

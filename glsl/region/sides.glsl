@@ -6,10 +6,9 @@ const uint SIDE_CULLED = 0u;
 const uint SIDE_INVISIBLE = 1u;
 const uint SIDE_VISIBLE = 2u;
 const uint SIDE_CUTOFF = 3u;
-// The bits of a block's side. With SIDE_CUTOFF another one may say that all of the block is in view.
+// The bits of a block's side. With SIDE_CUTOFF, and in the list of blocks for stage classify, another one may say that all of the
+// block is in view.
 const uint SIDE_BITS = 3u;
-const uint WHOLLY_IN_VIEW = 4u;
-// The same in the list of blocks for stage classify.
-const uint LISTED_IN_VIEW = 0x80000000u;
+const uint WHOLLY_IN_VIEW = 0x80000000u;
 
 #endif

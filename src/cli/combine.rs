@@ -86,7 +86,7 @@ pub(super) enum Combine {
 }
 
 impl Combine {
-    /// What becomes of the values; 0 without any.
+    /// The values combined; 0 without any.
     pub(super) fn apply(self, values: Vec<f64>) -> f64 {
         let count = values.len().max(1) as f64;
         match self {

@@ -2,7 +2,7 @@
 
 use crate::types;
 
-/// What splats are coloured in.
+/// The colours that splats get.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) enum SplatColours {
     /// The scene's colours.

@@ -27,7 +27,7 @@ use crate::output::say;
 
 /// A message to the event loop from another thread.
 pub(super) enum AppEvent {
-    /// What standard input says as a script.
+    /// The script that standard input holds.
     Script(Result<Vec<Action>, Failure>),
     /// A scene that has been read, or why it could not be.
     Read(Box<Result<LoadedWindow, Failure>>),

@@ -230,7 +230,7 @@ pub static COSTS: [Cost; 33] = [
         },
     )
     .turning(|_| 0.01),
-    // Whether there are large ties; how many the stretch has of each, where the tie begins and the counts of the stretches before;
+    // It reads whether there are large ties; how many the stretch has of each, where the tie begins and the counts of the stretches before;
     // then, for each of its partitions, who stands for a number and of which tie it is one. Of its numbers it reads the bits,
     // and of those of a tie the rest.
     Cost::new(

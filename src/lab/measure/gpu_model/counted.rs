@@ -1,4 +1,4 @@
-//! What was counted for the model: the numbers and dispatches of frames, and the compiler's estimates of their pipelines. The
+//! The counts that the model works with: the numbers and dispatches of frames, and the compiler's estimates of their pipelines. The
 //! files are written by `tests/gpu_cost/model.rs`.
 
 use glam::DVec3;

@@ -78,7 +78,7 @@ pub use recorder::{DepthImage, Groups, Recorder};
 pub use requirements::{LEAST_SUBGROUP, Support, check};
 pub use shader::{Bindings, BufferAccess, BufferUse, MAX_BUFFERS, Shader};
 pub use shape::DeviceShape;
-pub use timer::{PassSpan, Timer};
+pub use timer::{PassSpan, Timer, measures_dispatches};
 pub use write_only::WriteOnly;
 #[doc(hidden)]
 pub use {

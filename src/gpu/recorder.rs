@@ -103,6 +103,19 @@ impl<'a> Recorder<'a> {
 
     /// Records `record` as a pass: its name is the debug label and the timer's entry. Passes may nest.
     pub fn pass<R>(&mut self, name: &'static str, record: impl FnOnce(&mut Self) -> R) -> R {
+        if self.times_dispatches() {
+            return self.label(name, record);
+        }
+        self.timed(name, record)
+    }
+
+    fn times_dispatches(&self) -> bool {
+        self.timer
+            .as_ref()
+            .is_some_and(|timer| timer.is_by_dispatch())
+    }
+
+    fn timed<R>(&mut self, name: &'static str, record: impl FnOnce(&mut Self) -> R) -> R {
         // SAFETY: `begin`'s contract covers `cmd`, and it reset the timer.
         let timed = unsafe { begin_pass(self.device, self.cmd, self.timer.as_deref_mut(), name) };
         let result = record(self);
@@ -152,6 +165,22 @@ impl<'a> Recorder<'a> {
         self.before(&uses[..count]);
         #[cfg(feature = "lab")]
         self.device.note_dispatch(pipeline.name(), groups);
+        let record = |this: &mut Self| this.dispatch_now(pipeline, buffers, params, groups);
+        if self.times_dispatches() {
+            self.timed(pipeline.name(), record);
+        } else {
+            record(self);
+        }
+    }
+
+    fn dispatch_now(
+        &self,
+        pipeline: &ComputePipeline,
+        buffers: &[&Buffer],
+        params: &[u32],
+        groups: Groups<'_>,
+    ) {
+        let inner = pipeline.inner();
         let raw = self.device.raw();
         // SAFETY: `begin`'s contract covers `cmd`, pipeline and buffers; the layout is the pipeline's, the grid is within
         // the limits and the arguments lie inside their buffer.

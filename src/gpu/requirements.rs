@@ -254,9 +254,10 @@ pub unsafe fn check(
             .min(limits.max_compute_work_group_count[1]),
         max_image_size: limits.max_image_dimension2_d,
         pipeline_statistics,
+        // Validation layers of before 2024 know only the second name, and warn of the first.
         calibrated_timestamps: [
-            khr::calibrated_timestamps::NAME,
             ext::calibrated_timestamps::NAME,
+            khr::calibrated_timestamps::NAME,
         ]
         .into_iter()
         .find(|name| has(name)),

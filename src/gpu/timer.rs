@@ -20,7 +20,19 @@ pub struct Timer {
     names: Vec<&'static str>,
     /// True when a recording has reset the pool and may write to it.
     ready: bool,
+    /// True if each dispatch is measured instead of the stage that it belongs to.
+    by_dispatch: bool,
     statistics: Option<Statistics>,
+}
+
+/// The most dispatches of a frame that are measured one by one.
+const MOST_DISPATCHES: u32 = 256;
+
+/// True if the environment has `RARA_TIMES=dispatches`: timers then measure each compute dispatch, under the name of its
+/// pipeline, instead of the stage that it belongs to.
+#[doc(hidden)]
+pub fn measures_dispatches() -> bool {
+    std::env::var_os("RARA_TIMES").is_some_and(|times| times == "dispatches")
 }
 
 /// Pipeline statistics of the passes: pass `i` has query `i`.
@@ -44,8 +56,14 @@ pub struct PassSpan {
 }
 
 impl Timer {
-    /// A timer with room for `capacity` passes.
+    /// A timer with room for `capacity` passes, or for those of [`measures_dispatches`].
     pub fn new(device: &Device, capacity: u32) -> Result<Self> {
+        let by_dispatch = measures_dispatches();
+        let capacity = if by_dispatch {
+            MOST_DISPATCHES
+        } else {
+            capacity
+        };
         let mut pool = vk::QueryPool::null();
         if device.support().timestamp_period > 0.0 {
             let info = vk::QueryPoolCreateInfo::default()
@@ -63,8 +81,14 @@ impl Timer {
             capacity,
             names,
             ready: false,
+            by_dispatch,
             statistics: None,
         })
+    }
+
+    /// True if dispatches are measured instead of stages.
+    pub(super) fn is_by_dispatch(&self) -> bool {
+        self.by_dispatch
     }
 
     /// Makes it count also what the passes do, where the device was opened for it.

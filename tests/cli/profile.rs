@@ -6,7 +6,7 @@ use std::process::Command;
 
 use serde_json::Value;
 
-use super::{document, done, folder, line, refused, scene, stderr};
+use super::{document, done, folder, line, line_with, refused, scene, stderr};
 
 /// A trace's spans of one lane: name, begin, end, in microseconds.
 fn spans(trace: &Value, lane: &str) -> Vec<(String, f64, f64)> {
@@ -162,6 +162,37 @@ fn statistics_are_there_when_asked_for() {
     assert!(
         printed.contains("invocations") || printed.contains("counts nothing"),
         "{printed}"
+    );
+}
+
+#[test]
+fn dispatches_are_measured_instead_of_stages_when_asked_for() {
+    let here = folder("dispatches");
+    scene(&here);
+    let words = "render @/scene.ply --size 64x48 --raster tiles --validation --json";
+    let times = |variable| -> Vec<(String, f64)> {
+        let report = document(line_with(&here, words, variable));
+        let passes = report["passes"].as_array().expect("passes");
+        let time = |pass: &Value| {
+            let name = pass["name"].as_str().expect("a name");
+            (name.to_owned(), pass["ms"].as_f64().expect("a time"))
+        };
+        passes.iter().map(time).collect()
+    };
+    let stages = times(None);
+    let dispatches = times(Some(("RARA_TIMES", "dispatches")));
+    let has = |times: &[(String, f64)], name: &str| times.iter().any(|(known, _)| known == name);
+    for (name, is_stage, is_dispatch) in [
+        ("compact", true, true),
+        ("compact_scan", false, true),
+        ("bin", true, false),
+    ] {
+        assert_eq!(has(&stages, name), is_stage, "{stages:?}");
+        assert_eq!(has(&dispatches, name), is_dispatch, "{dispatches:?}");
+    }
+    assert!(
+        dispatches.iter().all(|(_, ms)| *ms >= 0.0),
+        "{dispatches:?}"
     );
 }
 

@@ -337,7 +337,7 @@ fn the_model_of_gpus_is_printed_without_one() {
     }
     for (file, what) in [
         ("model.md", "predictions, not measurements"),
-        ("model.csv", "\"H100\",1000000,\"true\","),
+        ("model.csv", "\"H200\",1000000,\"true\","),
     ] {
         let text = fs::read_to_string(here.join("model").join(file)).expect("it was written");
         assert!(text.contains(what), "{file}: {text}");

@@ -7,7 +7,7 @@ use super::numbers::Measurements;
 use super::run::{Run, in_mode, rasters};
 use super::world::World;
 use crate::frames::{in_turn, timed};
-use crate::measure::gpu_model::{self, GPUS, SIZE};
+use crate::measure::gpu_model::{self, GPUS, PassPrediction, SIZE};
 
 /// How many Gaussians the model's scenes have.
 pub(super) const GAUSSIANS: [u32; 2] = [1_000_000, 5_000_000];
@@ -18,6 +18,10 @@ pub(super) fn measure(run: &mut Run<'_>, world: &World, numbers: Measurements) -
     let mut rasters = rasters(&headless);
     rasters.retain(|(name, _)| run.allows("exact", name));
     let known = gpu_model::named(headless.device_name());
+    let name = |pass: &PassPrediction| match rara_gpu::measures_dispatches() {
+        true => pass.pass,
+        false => pass.stage,
+    };
     let mut predicted = gpu_model::frames();
     predicted.retain(|frame| world.file.is_none() && frame.gaussians == world.scene.len());
     for (is_cut, how) in [(false, "whole"), (true, "cut")] {
@@ -37,8 +41,8 @@ pub(super) fn measure(run: &mut Run<'_>, world: &World, numbers: Measurements) -
             {
                 let column = format!("predicted, {}", gpu.name);
                 let passes = gpu_model::predict(gpu, frame);
-                for (stage, ms) in gpu_model::stages(&passes) {
-                    numbers.add(&column, stage, "ms", vec![ms]);
+                for (name, ms) in gpu_model::sums(&passes, name) {
+                    numbers.add(&column, name, "ms", vec![ms]);
                 }
                 let all = passes.iter().map(|pass| pass.ms).sum();
                 numbers.add(&column, "device", "ms", vec![all]);

@@ -55,8 +55,8 @@ pub const GPUS: [Gpu; 4] = [
         latency: 800.0,
     },
     Gpu {
-        name: "H100",
-        bandwidth: 3350.0,
+        name: "H200",
+        bandwidth: 4800.0,
         lanes: 16896.0,
         clock: 1.98,
         latency: 650.0,
@@ -136,16 +136,19 @@ pub fn predict(gpu: &Gpu, frame: &ModelFrame) -> Vec<PassPrediction> {
     all
 }
 
-/// The predicted times of the stages of passes, ms.
-pub(crate) fn stages(passes: &[PassPrediction]) -> Vec<(&'static str, f64)> {
-    let mut stages: Vec<(&str, f64)> = Vec::new();
+/// The predicted times of passes, ms, of which those of one name are added up.
+pub(crate) fn sums(
+    passes: &[PassPrediction],
+    name: impl Fn(&PassPrediction) -> &'static str,
+) -> Vec<(&'static str, f64)> {
+    let mut sums: Vec<(&str, f64)> = Vec::new();
     for pass in passes {
-        match stages.iter_mut().find(|(stage, _)| *stage == pass.stage) {
+        match sums.iter_mut().find(|(known, _)| *known == name(pass)) {
             Some((_, ms)) => *ms += pass.ms,
-            None => stages.push((pass.stage, pass.ms)),
+            None => sums.push((name(pass), pass.ms)),
         }
     }
-    stages
+    sums
 }
 
 impl PassPrediction {

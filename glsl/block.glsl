@@ -65,6 +65,22 @@ uint axis_side(vec3 relative, vec3 half_box, vec3 row, float focal, float centre
     return first.x - first.y >= 0.0 && last.x + last.y <= 0.0 ? SIDE_VISIBLE : SIDE_CUTOFF;
 }
 
+// True when what makes up for the low-pass leaves each Gaussian of a block in view at least OPACITY_SPANNING. The gradients
+// are B = J M, with J J^T >= g^2 and g the pixels a unit at the block's farthest depth: so B's singular values are at least
+// g times the middle and the least deviation, and the factor, a product of l / (l + LOW_PASS) over their squares l, grows
+// with g. `spanning_scale` is the g from which it is large enough, by a margin for single precision: that finds |b1 x b2|,
+// which is at least OPACITY_SPANNING sqrt(LOW_PASS) |b|, to 1e-6 of the product of the largest deviations, so to two
+// hundredths where these are at most MOST_COMPENSATED.
+bool compensated_block_spans(Block block, float nearest, float farthest) {
+    const float MOST_COMPENSATED = 64.0; // px
+    vec4 bounds = abs(VIEW.slope_bounds);
+    float steepest = is_orthographic() ? 0.0 : max(max(bounds.x, bounds.y), max(bounds.z, bounds.w));
+    vec2 focal = LAYER_VIEW.unit * VIEW.focal.xy;
+    float largest = abs(block.high_sigma.w) * max(focal.x, focal.y) * (1.0 + 2.0 * steepest * steepest);
+    return largest < MOST_COMPENSATED * homogeneous(nearest)
+        && min(focal.x, focal.y) > 1.0001 * block.spanning_scale * homogeneous(farthest);
+}
+
 // SIDE_CULLED where no Gaussian is in view, SIDE_VISIBLE where all are, else SIDE_CUTOFF.
 uint block_view_side(Block block) {
     float reach = LAYER_VIEW.unit * block.low_reach.w;
@@ -86,10 +102,10 @@ uint block_view_side(Block block) {
     if (x == SIDE_CULLED || y == SIDE_CULLED) {
         return SIDE_CULLED;
     }
-    // A layer's opacity and what makes up for the low-pass may leave some of them fainter than the block knows.
-    bool is_as_opaque = LAYER.content.opacity == 1.0 && LAYER.content.antialiased == 0u;
-    bool drawable = sigma >= 0.0 && is_as_opaque && nearest > 1.0001 * VIEW.near_cut
-        && 4.0 * sigma * max(focal.x, focal.y) < DRAWABLE_DEVIATION * homogeneous(nearest);
+    // A layer's opacity may leave some of them fainter than the block knows.
+    bool drawable = sigma >= 0.0 && LAYER.content.opacity == 1.0 && nearest > 1.0001 * VIEW.near_cut
+        && 4.0 * sigma * max(focal.x, focal.y) < DRAWABLE_DEVIATION * homogeneous(nearest)
+        && (LAYER.content.antialiased == 0u || compensated_block_spans(block, nearest, farthest));
     return x == SIDE_VISIBLE && y == SIDE_VISIBLE && drawable ? SIDE_VISIBLE : SIDE_CUTOFF;
 }
 

@@ -142,6 +142,8 @@ struct Gaussian {
 struct Block {
     vec4 low_reach; // least coordinates of the centres; reach: the layer's units
     vec4 high_sigma; // greatest ones; largest standard deviation, negative where some may miss all pixels though in view
+    float spanning_scale; // pixels a unit of the layer from which all that are antialiased are opaque enough to span a pixel
+    uint pad[3]; // unused
 };
 
 // A splat on the screen: what each pixel that it covers needs of it, 64 bytes. splats.glsl says how they lie in memory.

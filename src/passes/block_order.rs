@@ -18,7 +18,7 @@ const FAINT: u32 = 3;
 /// Reach, as a share of the scene's size, from which a Gaussian is no longer small and from which it is large.
 const MIDDLE_REACH: f32 = 1.0 / 128.0;
 const LARGE_REACH: f32 = 1.0 / 16.0;
-/// Centres that the scene's extent is estimated from, and the share of them beyond each end.
+/// Gaussians that the scene's extent is estimated from, and the share of their centres beyond each end.
 const SAMPLES: usize = 1 << 14;
 const OUTLIERS: usize = 100;
 
@@ -30,10 +30,11 @@ pub(super) fn order(scene: &Gaussians) -> Vec<u32> {
     }
     let [low, high] = extent(scene.positions());
     let size = (high - low).max(Vec3::splat(f32::MIN_POSITIVE));
+    let most = most_spanning_scale(scene);
     let key = |number: u32| {
         let index = number as usize;
         let reach = reach(scene, index) / size.max_element();
-        let class = if !is_spanning(scene, index) {
+        let class = if !is_spanning(scene, index) || spanning_scale(scene, index) > most {
             FAINT
         } else if reach < MIDDLE_REACH {
             SMALL
@@ -63,6 +64,7 @@ pub(super) fn blocks(scene: &Gaussians, order: &[u32]) -> Vec<Block> {
 fn block(scene: &Gaussians, numbers: &[u32]) -> Block {
     let (mut low, mut high) = (Vec3::splat(f32::MAX), Vec3::splat(f32::MIN));
     let (mut farthest, mut sigma, mut spanning) = (-1.0_f32, 0.0_f32, true);
+    let mut spanning_scale = 0.0_f32;
     for index in numbers.iter().map(|&number| number as usize) {
         spanning &= is_spanning(scene, index);
         if scene.opacities()[index] < limits::ALPHA_MIN {
@@ -80,6 +82,7 @@ fn block(scene: &Gaussians, numbers: &[u32]) -> Block {
         high = high.max(position);
         farthest = farthest.max(reach);
         sigma = sigma.max(scene.scales()[index].max_element());
+        spanning_scale = spanning_scale.max(self::spanning_scale(scene, index));
     }
     let sigma = if spanning {
         sigma
@@ -89,6 +92,41 @@ fn block(scene: &Gaussians, numbers: &[u32]) -> Block {
     Block {
         low_reach: low.extend(farthest).into(),
         high_sigma: high.extend(sigma).into(),
+        spanning_scale,
+        pad: [0; 3],
+    }
+}
+
+/// The [`spanning_scale`] beyond which a Gaussian counts as faint: as close as the eye has to be for that, it will seldom be.
+fn most_spanning_scale(scene: &Gaussians) -> f32 {
+    let sample = (0..scene.len()).step_by(scene.len().div_ceil(SAMPLES));
+    let mut scales: Vec<_> = sample.map(|index| spanning_scale(scene, index)).collect();
+    let middle = scales.len() / 2;
+    2.0 * *scales.select_nth_unstable_by(middle, f32::total_cmp).1
+}
+
+/// Pixels a unit of the layer from which an antialiased splat keeps [`limits::OPACITY_SPANNING`], whatever direction it is
+/// seen from; infinite where none is enough, and zero of splats that are not antialiased. With the middle and the least
+/// deviation a and b and `x` the square of the scale, its opacity is multiplied by at least the root of
+/// `a²x / (a²x + L) · b²x / (b²x + L)` (glsl/block.glsl). That this is the share that is needed is a quadratic equation in x.
+fn spanning_scale(scene: &Gaussians, index: usize) -> f32 {
+    /// By how much single precision may find the opacity too small.
+    const MARGIN: f64 = 1.05;
+    if !scene.is_antialiased() {
+        return 0.0;
+    }
+    let least = MARGIN * f64::from(limits::OPACITY_SPANNING);
+    let share = (least / f64::from(scene.opacities()[index])).powi(2);
+    let mut deviations = scene.scales()[index].to_array();
+    deviations.sort_unstable_by(f32::total_cmp);
+    let [b, a, _] = deviations.map(|deviation| f64::from(deviation).powi(2));
+    let low_pass = f64::from(limits::LOW_PASS);
+    let half = 0.5 * share * low_pass * (a + b);
+    let rest = (1.0 - share) * a * b;
+    let square = (half + (half * half + rest * share * low_pass * low_pass).sqrt()) / rest;
+    match square >= 0.0 {
+        true => square.sqrt() as f32,
+        false => f32::INFINITY, // fainter than that itself, flat, or no number
     }
 }
 
@@ -132,8 +170,9 @@ fn morton(x: u32, y: u32, z: u32) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::Quat;
-    use rara_scene::GaussianArrays;
+    use glam::{DVec3, Quat, Vec3Swizzles};
+    use rara_reference::{Footprint, ViewTransform};
+    use rara_scene::{Camera, GaussianArrays};
 
     fn scene(count: usize) -> Gaussians {
         let mut state = 1_u32;
@@ -206,6 +245,46 @@ mod tests {
         let mut scene = scene(10);
         scene.opacities_mut().fill(0.001);
         assert!(blocks(&scene, &order(&scene))[0].low_reach[3] < 0.0);
+    }
+
+    /// From the scale on, no direction of sight makes a splat too faint; a tenth below, some do.
+    #[test]
+    fn antialiased_splats_span_a_pixel_from_a_scale_on() {
+        let mut scene = scene(500);
+        let count = scene.len();
+        let mut state = 7_u32;
+        let mut next = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 8) as f32 / (1 << 24) as f32
+        };
+        let centre = DVec3::new(0.25, 0.5, -0.125);
+        for index in 0..count {
+            scene.positions_mut()[index] = centre.as_vec3();
+            scene.scales_mut()[index] = Vec3::from_array([0; 3].map(|_| 0.1 * next().powi(4)));
+            scene.opacities_mut()[index] = 0.01 + 0.99 * next();
+        }
+        scene.set_antialiased(true);
+        let mut fainter = 0;
+        for index in 0..count {
+            let scale = f64::from(spanning_scale(&scene, index));
+            for (axis, share) in [0, 1, 2]
+                .into_iter()
+                .flat_map(|axis| [(axis, 1.0), (axis, 0.9)])
+            {
+                let way = [DVec3::X, DVec3::Y, DVec3::Z][axis];
+                let camera = Camera::look_at(centre - way, centre, way.zxy(), 40.0, (64, 64));
+                let camera = camera.expect("a view").fx(share * scale).fy(share * scale);
+                let view = ViewTransform::<f64>::new(&camera);
+                let opacity = Footprint::new(&scene, index, &view).map_or(0.0, |f| f.opacity);
+                let spans = opacity >= f64::from(limits::OPACITY_SPANNING);
+                assert!(
+                    spans || share < 1.0,
+                    "{index}: {opacity} at {scale} px a unit"
+                );
+                fainter += u32::from(!spans);
+            }
+        }
+        assert!(fainter > 300, "{fainter}: less would do");
     }
 
     #[test]

@@ -287,6 +287,8 @@ impl SceneBuffers {
         let anywhere = Block {
             low_reach: [-FAR, -FAR, -FAR, FAR],
             high_sigma: [FAR, FAR, FAR, -FAR],
+            spanning_scale: FAR,
+            pad: [0; 3],
         };
         let count = self.block_count() as usize;
         device.upload(&self.blocks, 0, cast_slice(&vec![anywhere; count]))

@@ -112,7 +112,7 @@ fn apart(a: &Picture, b: &Picture) -> f32 {
 
 /// Scenes of many blocks: neighbours alike, ones that leave their block to be looked at, and blocks whose Gaussians are
 /// one and the same, so that their bounds are no wider than they.
-fn scenes_of_blocks() -> [Gaussians; 4] {
+fn scenes_of_blocks() -> impl Iterator<Item = Gaussians> {
     let general = generate(Kind::General, 5_000, 3);
     let mut small = general.clone();
     for scale in small.scales_mut() {
@@ -144,7 +144,12 @@ fn scenes_of_blocks() -> [Gaussians; 4] {
             Vec3::splat([0.0005, 0.05][first / limits::BLOCK_SIZE as usize % 2]);
         tight.opacities_mut()[index] = 0.9;
     }
-    [general, small, odd, tight]
+    let antialiased = [&general, &odd, &tight].map(|scene| {
+        let mut scene = scene.clone();
+        scene.set_antialiased(true);
+        scene
+    });
+    [general, small, odd, tight].into_iter().chain(antialiased)
 }
 
 /// Views from outside, from within and with a long lens, aside and askew.
@@ -183,10 +188,12 @@ fn at_the_edge(camera: Camera, point: Vec3, pixels: f64) -> Camera {
 /// Blocks that are settled as a whole give the same counts and the same bytes as their Gaussians looked at one by one.
 #[test]
 fn blocks_change_nothing() {
+    /// SIDE_CULLED of glsl/region/sides.glsl.
+    const CULLED: u32 = 0;
     let mut random = Random::new(5);
     let mut pick = |count: usize| random.range(0.0, count as f64) as usize;
     let (mut settles, mut looks) = (headless(), headless());
-    let mut settled = 0;
+    let (mut settled, mut antialiased_in_view) = (0, 0);
     for scene in scenes_of_blocks() {
         settles.load(&scene).expect("uploads");
         looks.load(&scene).expect("uploads");
@@ -239,14 +246,21 @@ fn blocks_change_nothing() {
                     "step {step}: {counts:?}, {each:?}: {camera:?} {clip:?} {settings:?}"
                 );
                 assert!(unsettled.iter().all(|side| *side == unsettled[0]));
-                settled += sides.iter().filter(|side| **side != unsettled[0]).count();
+                let count = |is: fn(u32) -> bool| {
+                    let settled = sides.iter().filter(|side| **side != unsettled[0]);
+                    settled.filter(|side| is(**side)).count()
+                };
+                settled += count(|_| true);
+                if scene.is_antialiased() {
+                    antialiased_in_view += count(|side| side != CULLED);
+                }
                 looks.forget();
             }
         }
     }
     assert!(
-        settled > 1000,
-        "only {settled} blocks were settled as a whole"
+        settled > 1000 && antialiased_in_view > 100,
+        "only {settled} blocks were settled as a whole, {antialiased_in_view} of them antialiased and in view"
     );
 }
 

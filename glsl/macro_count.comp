@@ -24,14 +24,23 @@ void main() {
     }
     barrier();
     uvec2 bounds = partition_bounds(p, KEY_COUNT);
-    for (uint chunk = 0u; chunk < CHUNKS; chunk++) {
-        uint i = bounds.x + chunk * CHUNK_SPLATS + local;
-        if (i < bounds.y) {
-            uint splat = order.at[i];
-            uint word = RECT_WORD(tile_masks, splat);
-            rects.at[i] = word;
-            // The sums do not depend on the order.
-            atomicAdd(chunk_sums[chunk], word == RECT_LARGE ? pairs_of(rect_of_bounds(tile_masks.at[splat].zw)) : pairs_of_word(word));
+    for (uint first = 0u; first < CHUNKS; first += KEYS_AT_ONCE) {
+        uint own[KEYS_AT_ONCE]; // splats
+        uint words[KEYS_AT_ONCE];
+        for (uint k = 0u; k < KEYS_AT_ONCE; k++) {
+            own[k] = order.at[min(bounds.x + (first + k) * CHUNK_SPLATS + local, bounds.y - 1u)];
+        }
+        for (uint k = 0u; k < KEYS_AT_ONCE; k++) {
+            words[k] = RECT_WORD(tile_masks, own[k]);
+        }
+        for (uint k = 0u; k < KEYS_AT_ONCE; k++) {
+            uint i = bounds.x + (first + k) * CHUNK_SPLATS + local;
+            if (i < bounds.y) {
+                bool is_large = words[k] == RECT_LARGE;
+                rects.at[i] = words[k];
+                // The sums do not depend on the order.
+                atomicAdd(chunk_sums[first + k], is_large ? pairs_of(rect_of_bounds(tile_masks.at[own[k]].zw)) : pairs_of_word(words[k]));
+            }
         }
     }
     barrier();

@@ -118,10 +118,14 @@ void fill_heads() {
     barrier();
 }
 
-void write_pair(uvec2 bounds, uint pair, uint first_splat) {
-    uint mark = heads[head_place(pair)];
-    uint head = mark >> HEAD_BITS;
-    uint splat = bitfieldExtract(mark, 0, HEAD_BITS) - 1u;
+// The splat of a pair, by its number in the round.
+uint splat_of(uint pair) {
+    return bitfieldExtract(heads[head_place(pair)], 0, HEAD_BITS) - 1u;
+}
+
+void write_pair(uvec2 bounds, uint pair, uint first_splat, uint ordered) {
+    uint head = heads[head_place(pair)] >> HEAD_BITS;
+    uint splat = splat_of(pair);
     uint word = words[word_place(splat)];
     Rect tiles = rect_at(word, first_splat + splat);
     Rect rect = macro_rect(tiles);
@@ -129,7 +133,7 @@ void write_pair(uvec2 bounds, uint pair, uint first_splat) {
     uvec2 at = rect.first + uvec2(number % rect.size.x, number / rect.size.x);
     uint key = pair_key(at, tiles, needs_mask(word));
     macro_keys.at[bounds.x + pair] = key;
-    macro_splats.at[bounds.x + pair] = order.at[first_splat + splat];
+    macro_splats.at[bounds.x + pair] = ordered;
     atomicAdd(totals[digit(pair_macro_tile(key), 0u)], 1u); // the sums do not depend on the order
 }
 
@@ -149,10 +153,17 @@ void main() {
         load_round(first_splat, splats);
         uint end = mark_heads(bounds, first_splat, begin);
         fill_heads();
-        for (uint k = 0u; k < RADIX_KEYS; k++) {
-            uint pair = k * RADIX_GROUP_SIZE + local;
-            if (bounds.x + pair >= begin && bounds.x + pair < min(end, bounds.y)) {
-                write_pair(bounds, pair, first_splat);
+        for (uint first = local; first < RADIX_PARTITION; first += KEYS_AT_ONCE * RADIX_GROUP_SIZE) {
+            uint ordered[KEYS_AT_ONCE];
+            for (uint k = 0u; k < KEYS_AT_ONCE; k++) {
+                // Pairs of other rounds have no splat in this one.
+                ordered[k] = order.at[min(first_splat + splat_of(first + k * RADIX_GROUP_SIZE), splats - 1u)];
+            }
+            for (uint k = 0u; k < KEYS_AT_ONCE; k++) {
+                uint pair = first + k * RADIX_GROUP_SIZE;
+                if (bounds.x + pair >= begin && bounds.x + pair < min(end, bounds.y)) {
+                    write_pair(bounds, pair, first_splat, ordered[k]);
+                }
             }
         }
         barrier();

@@ -7,6 +7,8 @@
 
 // Keys of an invocation.
 const uint RADIX_KEYS = RADIX_PARTITION / RADIX_GROUP_SIZE;
+// Of those, how many it waits for together where it needs more than the keys.
+const uint KEYS_AT_ONCE = 4u;
 
 // p is the number of a partition.
 #define PARTITIONS ((KEY_COUNT + RADIX_PARTITION - 1u) / RADIX_PARTITION)

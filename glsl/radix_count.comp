@@ -35,11 +35,17 @@ void main() {
     uvec2 bounds = partition_bounds(p, KEY_COUNT);
     uint my_least = ~0u;
     uint my_greatest = 0u;
-    for (uint i = bounds.x + local; i < bounds.y; i += RADIX_GROUP_SIZE) {
-        uint key = keys.at[i];
-        atomicAdd(totals[digit(SORTED_BITS(key) - base, number)], 1u);
-        my_least = min(my_least, key);
-        my_greatest = max(my_greatest, key);
+    uint own[RADIX_KEYS];
+    for (uint k = 0u; k < RADIX_KEYS; k++) {
+        own[k] = keys.at[min(bounds.x + k * RADIX_GROUP_SIZE + local, bounds.y - 1u)];
+    }
+    for (uint k = 0u; k < RADIX_KEYS; k++) {
+        // Those beyond the end are the last key once more.
+        my_least = min(my_least, own[k]);
+        my_greatest = max(my_greatest, own[k]);
+        if (bounds.x + k * RADIX_GROUP_SIZE + local < bounds.y) {
+            atomicAdd(totals[digit(SORTED_BITS(own[k]) - base, number)], 1u);
+        }
     }
     if (is_first) {
         atomicMin(least, my_least);

@@ -49,18 +49,29 @@ void main() {
     uint digits[RADIX_KEYS];
     for (uint k = 0u; k < RADIX_KEYS; k++) {
         uint i = bounds.x + position_of(k);
+        uint d = digit(SORTED_BITS(key_at(is_first, min(i, bounds.y - 1u))) - base, number);
         // The positions beyond the last key take the last digit, and are left out below.
-        digits[k] = i < bounds.y ? digit(SORTED_BITS(key_at(is_first, i)) - base, number) : DIGITS - 1u;
+        digits[k] = i < bounds.y ? d : DIGITS - 1u;
     }
     sort_positions(digits);
     offsets[local] = before + histogram.at[COUNT_PLACE(local, p)] - digit_begins[local];
     barrier();
-    for (uint i = local; i < bounds.y - bounds.x; i += RADIX_GROUP_SIZE) {
-        uint item = items[i];
-        uint place = offsets[item_digit(item)] + i;
-        uint source = bounds.x + item_position(item);
-        sorted_keys.at[place] = key_at(is_first, source);
-        sorted_order.at[place] = is_first ? source : order.at[source];
+    for (uint first = local; first < bounds.y - bounds.x; first += KEYS_AT_ONCE * RADIX_GROUP_SIZE) {
+        uint places[KEYS_AT_ONCE];
+        uvec2 carried[KEYS_AT_ONCE]; // a key and what it orders
+        for (uint k = 0u; k < KEYS_AT_ONCE; k++) {
+            uint i = first + k * RADIX_GROUP_SIZE;
+            uint item = items[i];
+            places[k] = offsets[item_digit(item)] + i;
+            uint source = min(bounds.x + item_position(item), bounds.y - 1u);
+            carried[k] = uvec2(key_at(is_first, source), is_first ? source : order.at[source]);
+        }
+        for (uint k = 0u; k < KEYS_AT_ONCE; k++) {
+            if (first + k * RADIX_GROUP_SIZE < bounds.y - bounds.x) {
+                sorted_keys.at[places[k]] = carried[k].x;
+                sorted_order.at[places[k]] = carried[k].y;
+            }
+        }
     }
 }
 

@@ -94,6 +94,8 @@ const TILE: u64 = (limits::TILE_WIDTH * limits::TILE_HEIGHT) as u64;
 // Counts within a workgroup.
 const DIGITS: u64 = 1 << limits::SORT_BITS;
 const KEYS: u64 = (limits::RADIX_PARTITION / limits::RADIX_GROUP_SIZE) as u64;
+/// Those of them whose loads it waits for together, as in glsl/radix.glsl.
+const KEYS_AT_ONCE: u64 = 4;
 /// Chunks of splats in a partition, as in glsl/macro_tiles.glsl.
 const CHUNKS: u64 = KEYS;
 /// Splats of a batch for each invocation.
@@ -188,10 +190,9 @@ pub static COSTS: [Cost; 33] = [
     Cost::new(
         "radix_count",
         |n| n.partitions() * GROUP,
-        |_| 1 + KEYS,
+        |_| 2,
         |n| n.splats * WORD + n.histogram(),
-    )
-    .turning(|_| KEYS as f64 / 8.0),
+    ),
     // The partitions' least and greatest keys, which decide about the passes; then their counts of the digit, which it reads,
     // several at once, and writes.
     Cost::new(
@@ -210,7 +211,7 @@ pub static COSTS: [Cost; 33] = [
     Cost::new(
         "radix_scatter",
         |n| n.partitions() * GROUP,
-        |_| 4 + KEYS,
+        |_| 4 + KEYS / KEYS_AT_ONCE,
         |n| {
             let all = 4 * n.sort_passes.max(1) - 1;
             n.splats * all * WORD / n.sort_passes.max(1) + n.histogram()
@@ -286,10 +287,9 @@ pub static COSTS: [Cost; 33] = [
     Cost::new(
         "pair_radix_count",
         |n| n.pair_partitions() * GROUP,
-        |_| 1 + KEYS,
+        |_| 2,
         |n| n.macro_pairs * WORD + n.pair_histogram(),
-    )
-    .turning(|_| KEYS as f64 / 8.0),
+    ),
     Cost::new(
         "pair_radix_scan",
         |_| DIGITS * GROUP,
@@ -300,7 +300,7 @@ pub static COSTS: [Cost; 33] = [
     Cost::new(
         "pair_radix_scatter",
         |n| n.pair_partitions() * GROUP,
-        |_| 4 + KEYS,
+        |_| 4 + KEYS / KEYS_AT_ONCE,
         |n| n.macro_pairs * 4 * WORD + n.pair_histogram(),
     ),
     // How many pairs there are; the steps of the search, of which each invocation reads a pair of its own. It writes where each

@@ -12,6 +12,7 @@ use serde::Serialize;
 
 use super::values::STANDARD;
 
+use super::progress;
 pub(super) use super::progress::{ProgressLine, Spinner, be_quiet, is_quiet};
 
 /// Prints a line for people, unless they want none.
@@ -50,7 +51,7 @@ pub(super) fn end() {
 
 /// Prints why something failed. Where nobody listens (stderr closed), nothing is lost by going on.
 pub(super) fn complain(line: impl Display) {
-    let _ = writeln!(io::stderr(), "{line}");
+    let _ = progress::above_bars(|| writeln!(io::stderr(), "{line}"));
 }
 
 /// Tells people what the library warns of.

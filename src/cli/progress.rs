@@ -29,6 +29,11 @@ const TICK: Duration = Duration::from_millis(100);
 /// The bars that are shown at once, a line each.
 static BARS: LazyLock<MultiProgress> = LazyLock::new(MultiProgress::new);
 
+/// Prints something above the bars.
+pub(super) fn above_bars<T>(print: impl FnOnce() -> T) -> T {
+    BARS.suspend(print)
+}
+
 /// A thread that shows a bar once the work has taken a moment, and moves it from then on.
 struct Sign {
     /// Dropped to end it.

@@ -7,7 +7,7 @@ use rara_lab::stress::{self, FormRow, RegimeRow};
 use serde::Serialize;
 
 use super::failure::Failure;
-use super::output::{self, counted, say};
+use super::output::{self, ProgressLine, counted, say};
 use super::settings::DeviceArgs;
 
 /// Draw what is hard to draw, and compare it with the reference in double precision
@@ -58,13 +58,18 @@ impl Stress {
             ));
         }
         let mut rows = Vec::new();
+        let mut progress = ProgressLine::new("drawing");
+        let total = regimes.len() as u64;
         for regime in regimes {
+            progress.describe(regime.name);
             let row = stress::run(&mut headless, &regime, 1)?;
             if !self.json {
                 print(&row);
             }
             rows.push(row);
+            progress.update(rows.len() as u64, total);
         }
+        drop(progress);
         let failed = rows.iter().filter(|row| !row.ok).count();
         let (device, driver) = (
             headless.device_name().to_owned(),

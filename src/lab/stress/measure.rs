@@ -1,5 +1,8 @@
 //! The measures of a regime: pictures of the GPU against pictures of the reference in double precision.
 
+use std::panic;
+use std::thread::{self, ScopedJoinHandle};
+
 use serde::Serialize;
 
 use super::{Case, Limit, Regime, TARGET};
@@ -108,7 +111,8 @@ pub fn run(headless: &mut Headless, regime: &Regime, every: usize) -> Result<Reg
     Ok(row)
 }
 
-/// Measures a case. Without a turn both ways of drawing have each form, else every other form.
+/// Measures a case. Without a turn both ways of drawing have each form, else every other form. The reference's pictures
+/// are computed while ours are drawn.
 fn measure(
     headless: &mut Headless,
     case: &Case,
@@ -121,10 +125,26 @@ fn measure(
         Some(_) => &[Raster::Quad],
     };
     let uncut = Settings::default().mode(Mode::None);
-    // A splat that either way of drawing leaves out shows here, before anything is cut.
-    let all = [Raster::Tiles, Raster::Quad];
-    let drawn = pictures(headless, case, &Clip::default(), &uncut, &all)?;
-    let whole = truth(case, &Clip::default(), &uncut).picture;
+    let no_clip = Clip::default();
+    // Linear, so that a pixel's alpha is alpha times weight.
+    let decay = case.apart.then_some(Decay::Linear);
+    let settings = FORMS.map(|(_, mode, form)| {
+        let settings = Settings::default().mode(mode).form(form);
+        settings.decay(decay)
+    });
+    let (drawn, cut, whole, truths) = thread::scope(|scope| {
+        let beside = |clip, settings| scope.spawn(move || truth(case, clip, settings));
+        let whole = beside(&no_clip, &uncut);
+        let truths = settings.each_ref().map(|form| beside(&case.clip, form));
+        let mut draw =
+            |clip, settings, rasters: &[_]| pictures(headless, case, clip, settings, rasters);
+        // A splat that either way of drawing leaves out shows here, before anything is cut.
+        let drawn = draw(&no_clip, &uncut, &[Raster::Tiles, Raster::Quad])?;
+        let cut = (settings.iter().enumerate())
+            .map(|(at, form)| draw(&case.clip, form, rasters(at)))
+            .collect::<Result<Vec<_>>>()?;
+        Ok((drawn, cut, joined(whole).picture, truths.map(joined)))
+    })?;
     let decided: Vec<_> = (0..whole.pixels.len())
         .map(|at| {
             let alphas = drawn.iter().map(|(ours, _)| ours.pixels[at][3]);
@@ -139,20 +159,12 @@ fn measure(
         }
     }
 
-    // Linear, so that a pixel's alpha is alpha times weight.
-    let decay = case.apart.then_some(Decay::Linear);
-    let settings = FORMS.map(|(_, mode, form)| {
-        let settings = Settings::default().mode(mode).form(form);
-        settings.decay(decay)
-    });
-    let truths = settings.map(|settings| truth(case, &case.clip, &settings));
     let beam = FORMS.iter().position(|(form, ..)| *form == "beam");
     let beam = &truths[beam.expect("one of them")].picture;
     for (at, (settings, truth)) in settings.iter().zip(&truths).enumerate() {
-        let drawn = pictures(headless, case, &case.clip, settings, rasters(at))?;
         let (truth, counts) = (&truth.picture, truth.counts);
         let to = &mut row.forms[at];
-        for (ours, counted) in &drawn {
+        for (ours, counted) in &cut[at] {
             let bad = not_finite(ours);
             row.not_finite += bad;
             if bad == 0 {
@@ -190,6 +202,13 @@ fn pictures(
 
 fn truth(case: &Case, clip: &Clip, settings: &Settings) -> rara_reference::ReferenceFrame {
     rara_reference::render::<f64>(&case.scene, &case.camera, clip, settings)
+}
+
+/// What a thread has computed.
+fn joined<T>(thread: ScopedJoinHandle<'_, T>) -> T {
+    thread
+        .join()
+        .unwrap_or_else(|cause| panic::resume_unwind(cause))
 }
 
 /// Largest difference of a count.

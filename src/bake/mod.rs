@@ -26,30 +26,25 @@ use region::Region;
 /// The most Gaussians that can stand for a cut one.
 const MAX_CHILDREN: u32 = 3;
 
-/// How a clip is baked.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub struct BakeSettings {
-    /// Which Gaussians are cut: those that a frame of this mode cuts. [`Mode::Hard`] cuts none, so that Gaussians stay
-    /// or go by their centres, and [`Mode::None`] keeps all.
-    pub mode: Mode,
-    /// [`Mode::Rara`]: the traced ellipsoid, in standard deviations.
-    pub sigma: f32,
-    /// The number of Gaussians that stand for a cut one, 1 to 3: what is left of it is divided along the cut's normal
-    /// into parts of equal mass.
-    pub children: u32,
-    /// A cut Gaussian stays whole where the clip keeps all within this many standard deviations of its centre. At 1, no
-    /// child of a convex region is ever cut again, so that baking twice is baking once. Greater numbers follow the cut
-    /// closer, up to about 1.5 (a box cuts a scanned heart with 34.4 dB for 32.4), but baking again changes children.
-    pub leave: f32,
+setters! {
+    /// How a clip is baked.
+    #[derive(Debug, Clone, Copy, PartialEq)]
+    #[non_exhaustive]
+    pub struct BakeSettings {
+        /// Which Gaussians are cut: those that a frame of this mode cuts. [`Mode::Hard`] cuts none, so that Gaussians stay
+        /// or go by their centres, and [`Mode::None`] keeps all.
+        pub mode: Mode,
+        /// [`Mode::Rara`]: the traced ellipsoid, in standard deviations.
+        pub sigma: f32,
+        /// The number of Gaussians that stand for a cut one, 1 to 3: what is left of it is divided along the cut's normal
+        /// into parts of equal mass.
+        pub children: u32,
+        /// A cut Gaussian stays whole where the clip keeps all within this many standard deviations of its centre. At 1, no
+        /// child of a convex region is ever cut again, so that baking twice is baking once. Greater numbers follow the cut
+        /// closer, up to about 1.5 (a box cuts a scanned heart with 34.4 dB for 32.4), but baking again changes children.
+        pub leave: f32,
+    }
 }
-
-setters!(BakeSettings {
-    mode: Mode,
-    sigma: f32,
-    children: u32,
-    leave: f32,
-});
 
 impl Default for BakeSettings {
     fn default() -> Self {

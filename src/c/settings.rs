@@ -123,106 +123,144 @@ pub struct RaraSettings {
 
 versioned!(RaraSettings);
 
+const MODES: [(RaraMode, Mode); 4] = [
+    (RARA_MODE_NONE, Mode::None),
+    (RARA_MODE_HARD, Mode::Hard),
+    (RARA_MODE_RARA, Mode::Rara),
+    (RARA_MODE_EXACT, Mode::Exact),
+];
+const DECAYS: [(RaraDecay, Option<Decay>); 3] = [
+    (RARA_DECAY_AUTO, None),
+    (RARA_DECAY_LINEAR, Some(Decay::Linear)),
+    (RARA_DECAY_DEPTH, Some(Decay::Depth)),
+];
+const MISSES: [(RaraMiss, Miss); 3] = [
+    (RARA_MISS_KEEP, Miss::Keep),
+    (RARA_MISS_DROP, Miss::Drop),
+    (RARA_MISS_PEAK, Miss::Peak),
+];
+const FORMS: [(RaraExactForm, ExactForm); 3] = [
+    (RARA_EXACT_FORM_AUTO, ExactForm::Auto),
+    (RARA_EXACT_FORM_BEAM, ExactForm::Beam),
+    (RARA_EXACT_FORM_AFFINE, ExactForm::Affine),
+];
+const RASTERS: [(RaraRaster, Raster); 4] = [
+    (RARA_RASTER_AUTO, Raster::Auto),
+    (RARA_RASTER_MESH, Raster::Mesh),
+    (RARA_RASTER_QUAD, Raster::Quad),
+    (RARA_RASTER_TILES, Raster::Tiles),
+];
+const SHOWS: [(RaraShow, Show); 4] = [
+    (RARA_SHOW_COLOUR, Show::Colour),
+    (RARA_SHOW_WEIGHT, Show::Weight),
+    (RARA_SHOW_COUNT, Show::Count),
+    (RARA_SHOW_MEAN, Show::Mean),
+];
+const PHI_FORMS: [(RaraPhiForm, PhiForm); 3] = [
+    (RARA_PHI_FORM_QUINTIC, PhiForm::Quintic),
+    (RARA_PHI_FORM_CUBIC, PhiForm::Cubic),
+    (RARA_PHI_FORM_LOGISTIC, PhiForm::Logistic),
+];
+const PRESETS: [(RaraPreset, Preset); 3] = [
+    (RARA_PRESET_EXACT, Preset::Exact),
+    (RARA_PRESET_BALANCED, Preset::Balanced),
+    (RARA_PRESET_FAST, Preset::Fast),
+];
+
+/// The value that a code stands for; `what` has it and its C type, for the message.
+fn value<T: Copy>(table: &[(u32, T)], code: u32, what: (&str, &str)) -> Result<T> {
+    match table.iter().find(|row| row.0 == code) {
+        Some(&(_, value)) => Ok(value),
+        None => invalid(format!("{} {code} is no {}", what.0, what.1)),
+    }
+}
+
+/// The code of a value, or 0 where C has none for it.
+fn code<T: PartialEq>(table: &[(u32, T)], value: T) -> u32 {
+    let row = table.iter().find(|row| row.1 == value);
+    row.map_or(0, |row| row.0)
+}
+
 impl RaraSettings {
     pub(crate) fn new(preset: Preset) -> Self {
-        let settings = Settings::default();
-        let precision = preset.precision();
+        let settings = Settings::default().precision(preset.precision());
+        // A host has a background of its own.
+        let (
+            mode,
+            decay,
+            sigma,
+            miss,
+            trace_all,
+            form,
+            _background,
+            sh_degree,
+            raster,
+            show,
+            precision,
+        ) = settings.fields();
+        // The first two belong to the target and the scene.
+        let (_target, _sh, phi, key_bits, beam_switch, transmittance_min) = precision.fields();
         Self {
             struct_size: size_of::<Self>(),
-            mode: RARA_MODE_EXACT,
-            decay: RARA_DECAY_AUTO,
-            sigma: settings.sigma,
-            miss: RARA_MISS_PEAK,
-            trace_all: vk::FALSE,
-            form: RARA_EXACT_FORM_AUTO,
-            sh_degree: -1,
-            raster: RARA_RASTER_AUTO,
-            show: RARA_SHOW_COLOUR,
-            phi: match precision.phi {
-                PhiForm::Quintic => RARA_PHI_FORM_QUINTIC,
-                PhiForm::Cubic => RARA_PHI_FORM_CUBIC,
-                PhiForm::Logistic => RARA_PHI_FORM_LOGISTIC,
-            },
-            key_bits: precision.key_bits,
-            beam_switch: precision.beam_switch,
-            transmittance_min: precision.transmittance_min,
+            mode: mode_code(mode),
+            decay: code(&DECAYS, decay),
+            sigma,
+            miss: code(&MISSES, miss),
+            trace_all: trace_all.into(),
+            form: code(&FORMS, form),
+            sh_degree: sh_degree.map_or(-1, |degree| degree as i32),
+            raster: code(&RASTERS, raster),
+            show: code(&SHOWS, show),
+            phi: code(&PHI_FORMS, phi),
+            key_bits,
+            beam_switch,
+            transmittance_min,
         }
     }
 
     pub(crate) fn settings(&self) -> Result<Settings> {
-        fn no<T>(field: &str, value: u32, kind: &str) -> Result<T> {
-            invalid(format!("settings->{field} {value} is no {kind}"))
-        }
+        let Self {
+            struct_size: _,
+            mode: mode_code,
+            decay,
+            sigma,
+            miss,
+            trace_all,
+            form,
+            sh_degree,
+            raster,
+            show,
+            phi,
+            key_bits,
+            beam_switch,
+            transmittance_min,
+        } = *self;
+        // What belongs to the scene and the target, not to a frame, keeps its default.
+        let precision = Precision::default()
+            .phi(value(&PHI_FORMS, phi, ("settings->phi", "RaraPhiForm"))?)
+            .key_bits(key_bits)
+            .beam_switch(beam_switch)
+            .transmittance_min(transmittance_min);
         Ok(Settings::default()
-            .mode(mode(self.mode)?)
-            .decay(match self.decay {
-                RARA_DECAY_AUTO => None,
-                RARA_DECAY_LINEAR => Some(Decay::Linear),
-                RARA_DECAY_DEPTH => Some(Decay::Depth),
-                other => return no("decay", other, "RaraDecay"),
-            })
-            .sigma(self.sigma)
-            .miss(match self.miss {
-                RARA_MISS_KEEP => Miss::Keep,
-                RARA_MISS_DROP => Miss::Drop,
-                RARA_MISS_PEAK => Miss::Peak,
-                other => return no("miss", other, "RaraMiss"),
-            })
-            .trace_all(self.trace_all != 0)
-            .form(match self.form {
-                RARA_EXACT_FORM_AUTO => ExactForm::Auto,
-                RARA_EXACT_FORM_BEAM => ExactForm::Beam,
-                RARA_EXACT_FORM_AFFINE => ExactForm::Affine,
-                other => return no("form", other, "RaraExactForm"),
-            })
-            .sh_degree(u32::try_from(self.sh_degree).ok())
-            .raster(match self.raster {
-                RARA_RASTER_AUTO => Raster::Auto,
-                RARA_RASTER_MESH => Raster::Mesh,
-                RARA_RASTER_QUAD => Raster::Quad,
-                RARA_RASTER_TILES => Raster::Tiles,
-                other => return no("raster", other, "RaraRaster"),
-            })
-            .show(match self.show {
-                RARA_SHOW_COLOUR => Show::Colour,
-                RARA_SHOW_WEIGHT => Show::Weight,
-                RARA_SHOW_COUNT => Show::Count,
-                RARA_SHOW_MEAN => Show::Mean,
-                other => return no("show", other, "RaraShow"),
-            })
-            .precision(
-                Precision::default()
-                    // These belong to the scene and the target, not to a frame, and keep their defaults.
-                    .phi(match self.phi {
-                        RARA_PHI_FORM_QUINTIC => PhiForm::Quintic,
-                        RARA_PHI_FORM_CUBIC => PhiForm::Cubic,
-                        RARA_PHI_FORM_LOGISTIC => PhiForm::Logistic,
-                        other => return no("phi", other, "RaraPhiForm"),
-                    })
-                    .key_bits(self.key_bits)
-                    .beam_switch(self.beam_switch)
-                    .transmittance_min(self.transmittance_min),
-            ))
+            .mode(mode(mode_code)?)
+            .decay(value(&DECAYS, decay, ("settings->decay", "RaraDecay"))?)
+            .sigma(sigma)
+            .miss(value(&MISSES, miss, ("settings->miss", "RaraMiss"))?)
+            .trace_all(trace_all != 0)
+            .form(value(&FORMS, form, ("settings->form", "RaraExactForm"))?)
+            .sh_degree(u32::try_from(sh_degree).ok())
+            .raster(value(&RASTERS, raster, ("settings->raster", "RaraRaster"))?)
+            .show(value(&SHOWS, show, ("settings->show", "RaraShow"))?)
+            .precision(precision))
     }
 }
 
-pub(crate) fn mode(value: RaraMode) -> Result<Mode> {
-    Ok(match value {
-        RARA_MODE_NONE => Mode::None,
-        RARA_MODE_HARD => Mode::Hard,
-        RARA_MODE_RARA => Mode::Rara,
-        RARA_MODE_EXACT => Mode::Exact,
-        other => return invalid(format!("settings->mode {other} is no RaraMode")),
-    })
+pub(crate) fn mode(code: RaraMode) -> Result<Mode> {
+    value(&MODES, code, ("settings->mode", "RaraMode"))
 }
 
 pub(crate) fn mode_code(mode: Mode) -> RaraMode {
-    match mode {
-        Mode::None => RARA_MODE_NONE,
-        Mode::Hard => RARA_MODE_HARD,
-        Mode::Rara => RARA_MODE_RARA,
-        _ => RARA_MODE_EXACT,
-    }
+    code(&MODES, mode)
 }
 
 /// Reads a host's settings; null stands for the defaults.
@@ -242,12 +280,7 @@ pub unsafe extern "C" fn rara_settings_default(
     preset: RaraPreset,
 ) -> RaraResult {
     guard(|| {
-        let preset = match preset {
-            RARA_PRESET_EXACT => Preset::Exact,
-            RARA_PRESET_BALANCED => Preset::Balanced,
-            RARA_PRESET_FAST => Preset::Fast,
-            other => return invalid(format!("preset {other} is no RaraPreset")),
-        };
+        let preset = value(&PRESETS, preset, ("preset", "RaraPreset"))?;
         let default = RaraSettings::new(preset);
         write(settings, settings_size, &default, "settings")
     })

@@ -3,6 +3,8 @@
 use clap::Args;
 use rara::{PhiForm, Precision, Preset, ShFormat, TargetFormat};
 
+#[cfg(feature = "view")]
+use super::settings::{flag, name, text};
 use super::values;
 
 /// The precision that is given up for time. A single choice overrides the preset's.
@@ -48,14 +50,35 @@ pub(super) struct PrecisionArgs {
 impl PrecisionArgs {
     pub(super) fn meant(&self) -> Precision {
         let preset = self.preset.precision();
+        let (target, sh, phi, key_bits, beam_switch, transmittance_min) = preset.fields();
         preset
-            .target(self.target_format.unwrap_or(preset.target))
-            .sh(self.sh_format.unwrap_or(preset.sh))
-            .phi(self.phi.unwrap_or(preset.phi))
-            .key_bits(self.key_bits.unwrap_or(preset.key_bits))
-            .beam_switch(self.beam_switch.unwrap_or(preset.beam_switch))
-            .transmittance_min(self.transmittance_min.unwrap_or(preset.transmittance_min))
+            .target(self.target_format.unwrap_or(target))
+            .sh(self.sh_format.unwrap_or(sh))
+            .phi(self.phi.unwrap_or(phi))
+            .key_bits(self.key_bits.unwrap_or(key_bits))
+            .beam_switch(self.beam_switch.unwrap_or(beam_switch))
+            .transmittance_min(self.transmittance_min.unwrap_or(transmittance_min))
     }
+}
+
+/// The single flags that make `preset` into `own`, as a user would type them.
+#[cfg(feature = "view")]
+pub(super) fn differences(own: Precision, preset: Precision) -> impl Iterator<Item = String> {
+    let (target, sh, phi, key_bits, beam_switch, transmittance_min) = own.fields();
+    let flags = [
+        flag("target-format", target, preset.target, name),
+        flag("sh-format", sh, preset.sh, name),
+        flag("phi", phi, preset.phi, name),
+        flag("key-bits", key_bits, preset.key_bits, text),
+        flag("beam-switch", beam_switch, preset.beam_switch, text),
+        flag(
+            "transmittance-min",
+            transmittance_min,
+            preset.transmittance_min,
+            text,
+        ),
+    ];
+    flags.into_iter().flatten()
 }
 
 fn switch(text: &str) -> Result<f32, String> {

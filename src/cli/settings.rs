@@ -80,6 +80,57 @@ pub(super) fn name(value: impl ValueEnum) -> String {
     value.map_or_else(String::new, |value| value.get_name().into())
 }
 
+/// The flag of a value that is not the default, as a user would type it.
+#[cfg(feature = "view")]
+pub(super) fn flag<T: PartialEq>(
+    flag: &str,
+    own: T,
+    default: T,
+    text: impl Fn(T) -> String,
+) -> Option<String> {
+    let own = (own != default).then(|| text(own))?;
+    Some(format!("--{flag} {own}"))
+}
+
+/// A number on the command line.
+#[cfg(feature = "view")]
+pub(super) fn text(number: impl ToString) -> String {
+    number.to_string()
+}
+
+/// The flags of the settings that are not the default, as a user would type them; the mode always, the precision never.
+#[cfg(feature = "view")]
+pub(super) fn flags(own: &Settings) -> impl Iterator<Item = String> {
+    let usual = Settings::default();
+    // No flag has the form, and `precision::differences` the precision.
+    let (
+        mode,
+        decay,
+        sigma,
+        miss,
+        trace_all,
+        _form,
+        background,
+        sh_degree,
+        raster,
+        show,
+        _precision,
+    ) = own.fields();
+    let colour = |[r, g, b]: [f32; 3]| format!("--background {r},{g},{b}");
+    let flags = [
+        Some(format!("--mode {}", name(mode))),
+        decay.map(|decay| format!("--decay {}", name(decay))),
+        flag("sigma", sigma, usual.sigma, text),
+        flag("miss", miss, usual.miss, name),
+        trace_all.then(|| "--trace-all".into()),
+        background.map(colour),
+        sh_degree.map(|degree| format!("--sh-degree {degree}")),
+        flag("raster", raster, usual.raster, name),
+        flag("show", show, usual.show, name),
+    ];
+    flags.into_iter().flatten()
+}
+
 impl SettingsArgs {
     pub(super) fn meant(&self) -> Result<Settings, Failure> {
         let defaults = self.look.meant()?;

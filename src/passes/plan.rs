@@ -120,9 +120,12 @@ impl Plan {
         let of_camera = Clip::of(camera.clip_planes()?, ClipOp::And);
         let region = region_data(own.chain([clip, &of_camera]), settings)?;
         let layers = Layers::new(scene.layers, camera, clip, &region)?;
-        let weight = weight_data(&scene, &region, &layers, settings)?;
+        // The laws take Phi; the target and the scene have formats of their own.
+        let (_target, _sh, _phi, key_bits, beam_switch, transmittance_min) =
+            settings.precision.fields();
+        let weight = weight_data(&scene, &region, &layers, settings, beam_switch)?;
         let boxes = layers::boxes(scene.layers, camera);
-        let keys = DepthKeys::new(boxes, settings.precision.key_bits)?;
+        let keys = DepthKeys::new(boxes, key_bits)?;
         let degree = settings.sh_degree.unwrap_or(scene.sh_degree);
         let size = vk::Extent2D {
             width: camera.width,
@@ -173,7 +176,7 @@ impl Plan {
                     key_shift: keys.shift,
                     sort_runs: scene.sort_runs,
                 },
-                tiles: tiles_data(size, scene.span_runs, settings)?,
+                tiles: tiles_data(size, scene.span_runs, transmittance_min)?,
                 room: RoomData {
                     pair_capacity: scene.pair_capacity,
                     redrawn: scene.redrawn.into(),
@@ -187,10 +190,15 @@ impl Plan {
     }
 
     /// The same plan for another size of the picture, px, as far as buffers are concerned.
-    pub(crate) fn sized(&self, width: u32, height: u32, settings: &Settings) -> Result<Self> {
+    pub(crate) fn sized(&self, width: u32, height: u32) -> Result<Self> {
         let mut plan = self.clone();
-        let runs = self.data.tiles.span_runs;
-        plan.data.tiles = tiles_data(vk::Extent2D { width, height }, runs, settings)?;
+        let TilesData {
+            span_runs,
+            transmittance_min,
+            ..
+        } = self.data.tiles;
+        let size = vk::Extent2D { width, height };
+        plan.data.tiles = tiles_data(size, span_runs, transmittance_min)?;
         for view in &mut plan.data.views {
             view.size[..2].copy_from_slice(&[width as f32, height as f32]);
         }
@@ -319,6 +327,7 @@ fn weight_data(
     region: &types::RegionData,
     layers: &Layers,
     settings: &Settings,
+    switch: f32,
 ) -> Result<WeightData> {
     if !(settings.sigma.is_finite() && settings.sigma > 0.0) {
         return Err(Error::Invalid(format!(
@@ -326,7 +335,6 @@ fn weight_data(
             settings.sigma
         )));
     }
-    let switch = settings.precision.beam_switch;
     if switch.is_nan() || switch < 0.0 {
         return Err(Error::Invalid(format!(
             "a beam switch of {switch} is not a size; give zero or more"
@@ -361,8 +369,7 @@ fn weight_data(
 }
 
 /// The tiles of a picture.
-fn tiles_data(size: vk::Extent2D, span_runs: u32, settings: &Settings) -> Result<TilesData> {
-    let saturated = settings.precision.transmittance_min;
+fn tiles_data(size: vk::Extent2D, span_runs: u32, saturated: f32) -> Result<TilesData> {
     if !(0.0..1.0).contains(&saturated) {
         return Err(Error::Invalid(format!(
             "a least transmittance of {saturated} is not one; give zero or more, below 1"

@@ -24,54 +24,42 @@ pub enum ColorSpace {
     Linear,
 }
 
-/// The description from which a renderer is created: [`RendererDesc::new`] is the usual one, and a host sets what it wants
-/// otherwise.
-#[derive(Debug, Clone, Copy)]
-#[non_exhaustive]
-pub struct RendererDesc {
-    /// Format of the colour attachment that [`Renderer::draw`](super::Renderer::draw) draws into. It must be blendable;
-    /// splats are trained to be blended as stored, so sRGB formats, which blend in linear light, give another picture.
-    pub color_format: vk::Format,
-    /// What the attachment's numbers stand for.
-    pub color_space: ColorSpace,
-    /// The depth attachment of the host's scope, which splats are tested against; `None` if it has none.
-    pub depth: Option<DepthDesc>,
-    /// The target of [`Renderer::draw_depth`](super::Renderer::draw_depth); `None` where that is not called, and then
-    /// costs nothing.
-    pub expected_depth: Option<ExpectedDepthDesc>,
-    /// Samples a pixel of the attachments. A splat's colour is computed once a pixel, its depth is tested for each sample.
-    pub samples: vk::SampleCountFlags,
-    /// Dynamic rendering, or a classic render pass.
-    pub target: Target,
-    /// The way to reach buffers: by address or bound, where the validation layer can watch them, or some of either;
-    /// [`Bindings::suiting`] says which is faster on a device. With [`Bindings::Bound`] a frame whose buffers exceed the device's
-    /// binding size uses addresses.
-    pub bindings: Bindings,
-    /// True to take timestamps around the stages.
-    pub timing: bool,
-    /// True to count also what the stages do, where the device was opened for it; only with `timing`.
-    pub statistics: bool,
-    /// True to let a frame take over results of the one before that it would compute again to the same bytes. The host
-    /// then submits every frame that it prepares, in order, or calls [`Renderer::forget`](super::Renderer::forget).
-    pub reuse: bool,
-    /// How many recorded frames may be unfinished at once, from 1 to [`MAX_FRAMES`](Self::MAX_FRAMES);
-    /// [`Renderer`](super::Renderer) says what the host promises.
-    pub frames_in_flight: u32,
+setters! {
+    /// The description from which a renderer is created: [`RendererDesc::new`] is the usual one, and a host sets what it wants
+    /// otherwise.
+    #[derive(Debug, Clone, Copy)]
+    #[non_exhaustive]
+    pub struct RendererDesc {
+        /// Format of the colour attachment that [`Renderer::draw`](super::Renderer::draw) draws into. It must be blendable;
+        /// splats are trained to be blended as stored, so sRGB formats, which blend in linear light, give another picture.
+        pub color_format: vk::Format,
+        /// What the attachment's numbers stand for.
+        pub color_space: ColorSpace,
+        /// The depth attachment of the host's scope, which splats are tested against; `None` if it has none.
+        pub depth: Option<DepthDesc>,
+        /// The target of [`Renderer::draw_depth`](super::Renderer::draw_depth); `None` where that is not called, and then
+        /// costs nothing.
+        pub expected_depth: Option<ExpectedDepthDesc>,
+        /// Samples a pixel of the attachments. A splat's colour is computed once a pixel, its depth is tested for each sample.
+        pub samples: vk::SampleCountFlags,
+        /// Dynamic rendering, or a classic render pass.
+        pub target: Target,
+        /// The way to reach buffers: by address or bound, where the validation layer can watch them, or some of either;
+        /// [`Bindings::suiting`] says which is faster on a device. With [`Bindings::Bound`] a frame whose buffers exceed the
+        /// device's binding size uses addresses.
+        pub bindings: Bindings,
+        /// True to take timestamps around the stages.
+        pub timing: bool,
+        /// True to count also what the stages do, where the device was opened for it; only with `timing`.
+        pub statistics: bool,
+        /// True to let a frame take over results of the one before that it would compute again to the same bytes. The host
+        /// then submits every frame that it prepares, in order, or calls [`Renderer::forget`](super::Renderer::forget).
+        pub reuse: bool,
+        /// How many recorded frames may be unfinished at once, from 1 to [`MAX_FRAMES`](Self::MAX_FRAMES);
+        /// [`Renderer`](super::Renderer) says what the host promises.
+        pub frames_in_flight: u32,
+    }
 }
-
-setters!(RendererDesc {
-    color_format: vk::Format,
-    color_space: ColorSpace,
-    depth: Option<DepthDesc>,
-    expected_depth: Option<ExpectedDepthDesc>,
-    samples: vk::SampleCountFlags,
-    target: Target,
-    bindings: Bindings,
-    timing: bool,
-    statistics: bool,
-    reuse: bool,
-    frames_in_flight: u32,
-});
 
 /// The host's depth attachment. Splats behind its depths are hidden, and none is written into it. A splat has one depth in
 /// all of its pixels: that of its centre, by which splats are ordered. Opaque things are drawn first, then splats.

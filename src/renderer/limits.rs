@@ -10,43 +10,34 @@ use rara_scene::clip::{Clip, ClipOp, Plane, Quadric, Surface};
 use rara_scene::precision::ShFormat;
 use rara_scene::settings::{Mode, Settings};
 
-/// The most that frames will ask for, for [`Renderer::reserve`](super::Renderer::reserve): [`FrameLimits::new`] is the usual,
-/// and a host sets what it wants otherwise.
-#[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
-pub struct FrameLimits {
-    /// Width and height of the pictures, px, each by itself: of one that may be upright or lying, the longer side twice.
-    pub size: (u32, u32),
-    /// Gaussians of a scene, all of its layers together.
-    pub gaussians: u32,
-    /// Layers of a scene.
-    pub layers: u32,
-    /// How the scenes' spherical harmonics are stored.
-    pub sh_format: ShFormat,
-    /// Planes of a clip that is a list of planes; [`Camera::clip_near`] and [`Camera::clip_far`] add one each. Of more than
-    /// [`Clip::MAX_SURFACES`] it is a combination.
-    pub planes: u32,
-    /// Surfaces of a clip that bends or combines; 0 for none.
-    pub surfaces: u32,
-    /// The settings that frames have, each with every kind of clip: modes, rasters, what is shown and with which laws.
-    pub settings: Vec<Settings>,
-    /// Pairs of tile and splat, for which there is then exactly this room: a frame with more is drawn as quads, the same
-    /// picture but slower, and [`fell_back`](super::Renderer::fell_back) says so.
-    /// [`SceneBuffers::estimated_pairs`](crate::SceneBuffers::estimated_pairs) tells a camera's. `None` for the usual room:
-    /// 2 a Gaussian and 64 a tile of 8x8 pixels; frames with more then have it grow, which allocates.
-    pub pairs: Option<u32>,
+setters! {
+    /// The most that frames will ask for, for [`Renderer::reserve`](super::Renderer::reserve): [`FrameLimits::new`] is the
+    /// usual, and a host sets what it wants otherwise.
+    #[derive(Debug, Clone, PartialEq)]
+    #[non_exhaustive]
+    pub struct FrameLimits {
+        /// Width and height of the pictures, px, each by itself: of one that may be upright or lying, the longer side twice.
+        pub size: (u32, u32),
+        /// Gaussians of a scene, all of its layers together.
+        pub gaussians: u32,
+        /// Layers of a scene.
+        pub layers: u32,
+        /// How the scenes' spherical harmonics are stored.
+        pub sh_format: ShFormat,
+        /// Planes of a clip that is a list of planes; [`Camera::clip_near`] and [`Camera::clip_far`] add one each. Of more than
+        /// [`Clip::MAX_SURFACES`] it is a combination.
+        pub planes: u32,
+        /// Surfaces of a clip that bends or combines; 0 for none.
+        pub surfaces: u32,
+        /// The settings that frames have, each with every kind of clip: modes, rasters, what is shown and with which laws.
+        pub settings: Vec<Settings>,
+        /// Pairs of tile and splat, for which there is then exactly this room: a frame with more is drawn as quads, the same
+        /// picture but slower, and [`fell_back`](super::Renderer::fell_back) says so.
+        /// [`SceneBuffers::estimated_pairs`](crate::SceneBuffers::estimated_pairs) tells a camera's. `None` for the usual room:
+        /// 2 a Gaussian and 64 a tile of 8x8 pixels; frames with more then have it grow, which allocates.
+        pub pairs: Option<u32>,
+    }
 }
-
-setters!(FrameLimits {
-    size: (u32, u32),
-    gaussians: u32,
-    layers: u32,
-    sh_format: ShFormat,
-    planes: u32,
-    surfaces: u32,
-    settings: Vec<Settings>,
-    pairs: Option<u32>,
-});
 
 impl FrameLimits {
     /// Pictures of so many pixels and scenes of so many Gaussians in one layer, cut by up to six planes in any mode, with the

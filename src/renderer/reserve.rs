@@ -36,11 +36,11 @@ impl Renderer {
         let pairs = self.reserved_pairs(limits);
         let mut sizes: Option<Sizes> = None;
         let mut largest = None;
-        self.for_each_plan(limits, pairs, &mut |plan, settings| {
+        self.for_each_plan(limits, pairs, &mut |plan| {
             let mut more = plan.sizes();
             let holds_tiles = |sizes: &Sizes| sizes.hold_tiles_of(&more);
             if plan.is_tiled() && !sizes.as_ref().is_some_and(holds_tiles) {
-                more = of_lower_pictures(plan, settings)?;
+                more = of_lower_pictures(plan)?;
             }
             let more = more.reserved();
             sizes = Some(match sizes.take() {
@@ -119,7 +119,7 @@ impl Renderer {
         let scene = SceneBuffers::largest_of(limits.gaussians, limits.sh_format);
         let of_scene = self.bindings_of(largest.max(scene));
         let mut pipelines = std::mem::take(&mut self.pipelines);
-        let compiled = self.for_each_plan(limits, pairs, &mut |plan, _| {
+        let compiled = self.for_each_plan(limits, pairs, &mut |plan| {
             pipelines.ensure(&self.device, of_memory, targets, plan)?;
             pipelines.ensure(&self.device, of_scene, targets, plan)?;
             Ok(())
@@ -133,7 +133,7 @@ impl Renderer {
         &self,
         limits: &FrameLimits,
         pairs: PairRoom,
-        act: &mut dyn FnMut(&Plan, &Settings) -> Result<()>,
+        act: &mut dyn FnMut(&Plan) -> Result<()>,
     ) -> Result<()> {
         let nothing = Gaussians::default();
         let layer = SceneLayer::new(&Layer::new("", &nothing), 0);
@@ -146,10 +146,10 @@ impl Renderer {
                         let layers = &layers[..count as usize];
                         let mut plan =
                             self.plan_of(limits, pairs, (layers, clip, settings, size))?;
-                        act(&plan, settings)?;
+                        act(&plan)?;
                         for work in self.further_work(&plan) {
                             plan.work = work;
-                            act(&plan, settings)?;
+                            act(&plan)?;
                         }
                     }
                 }
@@ -195,11 +195,11 @@ impl Renderer {
 }
 
 /// The sizes of a plan and of the same for lower pictures, for which CPU drivers divide the rows into more parts.
-fn of_lower_pictures(plan: &Plan, settings: &Settings) -> Result<Sizes> {
+fn of_lower_pictures(plan: &Plan) -> Result<Sizes> {
     let [width, height] = plan.size().map(|side| side as u32);
     let mut sizes = plan.sizes();
     for rows in 1..height.div_ceil(limits::TILE_HEIGHT) {
-        let lower = plan.sized(width, rows * limits::TILE_HEIGHT, settings)?;
+        let lower = plan.sized(width, rows * limits::TILE_HEIGHT)?;
         sizes = sizes.or(&lower.sizes());
     }
     Ok(sizes)

@@ -29,56 +29,43 @@ pub enum Projection {
     Orthographic,
 }
 
-/// A camera and the size of its picture. All in f64: the GPU gets single-precision values derived from it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub struct Camera {
-    /// Picture width, pixels.
-    pub width: u32,
-    /// Picture height, pixels.
-    pub height: u32,
-    /// Focal length along x, pixels; of an orthographic camera the pixels of a world unit.
-    pub fx: f64,
-    /// Focal length along y, pixels; of an orthographic camera the pixels of a world unit.
-    pub fy: f64,
-    /// Principal point, pixels from the picture's left edge (`width / 2` is the middle).
-    pub cx: f64,
-    /// Principal point, pixels from the picture's top edge (`height / 2` is the middle).
-    pub cy: f64,
-    /// The eye's position, world units. An orthographic camera sees the same from every point of a line along its view
-    /// axis, but for what is nearer than its [near cut](Self::near_cut). Depths count from the eye here too, in single precision:
-    /// an eye not much farther away than the scene is large keeps what lies close together in order.
-    pub eye: DVec3,
-    /// World to camera rotation (rows are the camera's right, down and forward axes in the world). With a determinant of -1,
-    /// as [`of_projection`](Self::of_projection) gives a left-handed host, the picture is that of a mirrored world.
-    pub rotation: DMat3,
-    /// How points become pixels.
-    pub projection: Projection,
-    /// The depth, world units along the view axis, from which on the scene is kept: a plane across the axis that moves with
-    /// the camera and cuts every layer, whatever else cuts it. Splats are cut as by any other plane, by the mode of the
-    /// [settings](crate::settings::Settings); in mode `none` it is not asked.
-    pub clip_near: Option<f64>,
-    /// The depth up to which the scene is kept, likewise.
-    pub clip_far: Option<f64>,
-    /// The depth, world units, from which on splats are drawn: those whose centres are nearer are left out whole. Without one
-    /// it is 0.2 units of the scene, as in 3DGS, however large these are in the world.
-    pub near_cut: Option<f64>,
+setters! {
+    /// A camera and the size of its picture. All in f64: the GPU gets single-precision values derived from it.
+    #[derive(Debug, Clone, Copy, PartialEq)]
+    #[non_exhaustive]
+    pub struct Camera {
+        /// Picture width, pixels.
+        pub width: u32,
+        /// Picture height, pixels.
+        pub height: u32,
+        /// Focal length along x, pixels; of an orthographic camera the pixels of a world unit.
+        pub fx: f64,
+        /// Focal length along y, pixels; of an orthographic camera the pixels of a world unit.
+        pub fy: f64,
+        /// Principal point, pixels from the picture's left edge (`width / 2` is the middle).
+        pub cx: f64,
+        /// Principal point, pixels from the picture's top edge (`height / 2` is the middle).
+        pub cy: f64,
+        /// The eye's position, world units. An orthographic camera sees the same from every point of a line along its view
+        /// axis, but for what is nearer than its [near cut](Self::near_cut). Depths count from the eye here too, in single
+        /// precision: an eye not much farther away than the scene is large keeps what lies close together in order.
+        pub eye: DVec3,
+        /// World to camera rotation (rows are the camera's right, down and forward axes in the world). With a determinant of
+        /// -1, as [`of_projection`](Self::of_projection) gives a left-handed host, the picture is that of a mirrored world.
+        pub rotation: DMat3,
+        /// How points become pixels.
+        pub projection: Projection,
+        /// The depth, world units along the view axis, from which on the scene is kept: a plane across the axis that moves with
+        /// the camera and cuts every layer, whatever else cuts it. Splats are cut as by any other plane, by the mode of the
+        /// [settings](crate::settings::Settings); in mode `none` it is not asked.
+        pub clip_near: Option<f64>,
+        /// The depth up to which the scene is kept, likewise.
+        pub clip_far: Option<f64>,
+        /// The depth, world units, from which on splats are drawn: those whose centres are nearer are left out whole. Without
+        /// one it is 0.2 units of the scene, as in 3DGS, however large these are in the world.
+        pub near_cut: Option<f64>,
+    }
 }
-
-setters!(Camera {
-    width: u32,
-    height: u32,
-    fx: f64,
-    fy: f64,
-    cx: f64,
-    cy: f64,
-    eye: DVec3,
-    rotation: DMat3,
-    projection: Projection,
-    clip_near: Option<f64>,
-    clip_far: Option<f64>,
-    near_cut: Option<f64>,
-});
 
 impl Camera {
     /// Largest picture side, pixels. Vulkan guarantees 4096; every driver we know has at least this.

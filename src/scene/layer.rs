@@ -7,23 +7,19 @@ use crate::placement::Placement;
 use rara_base::error::{Error, Result};
 use rara_base::setters;
 
-/// The state of a layer, which may change from frame to frame.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub struct LayerState {
-    /// The layer's placement in its scene.
-    pub placement: Placement,
-    /// The factor of its Gaussians' opacities, 0 to 1.
-    pub opacity: f32,
-    /// True when it is drawn. A hidden layer costs a test for each of its blocks of 256 Gaussians.
-    pub visible: bool,
+setters! {
+    /// The state of a layer, which may change from frame to frame.
+    #[derive(Debug, Clone, Copy, PartialEq)]
+    #[non_exhaustive]
+    pub struct LayerState {
+        /// The layer's placement in its scene.
+        pub placement: Placement,
+        /// The factor of its Gaussians' opacities, 0 to 1.
+        pub opacity: f32,
+        /// True when it is drawn. A hidden layer costs a test for each of its blocks of 256 Gaussians.
+        pub visible: bool,
+    }
 }
-
-setters!(LayerState {
-    placement: Placement,
-    opacity: f32,
-    visible: bool,
-});
 
 impl Default for LayerState {
     fn default() -> Self {

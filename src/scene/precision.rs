@@ -77,57 +77,52 @@ pub enum PhiForm {
     Logistic,
 }
 
-/// The precision that a frame gives up for time.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub struct Precision {
-    /// Format of the picture.
-    pub target: TargetFormat,
-    /// How spherical harmonics are stored. Takes effect in `Headless::load_as` and
-    /// `SceneBuffers::upload`, not frame by frame.
-    pub sh: ShFormat,
-    /// Phi of the exact mode.
-    pub phi: PhiForm,
-    /// How many bits of the depths the sort compares at most, 8 to 32; each pass takes eight. They count from the nearest
-    /// depth that the scene's bounds allow, so 24 lose nothing unless the farthest is more than four times as far.
-    pub key_bits: u32,
-    /// Exact mode: a cut splat gets the perspective-exact form where sigma_max / Z exceeds this, else the affine one.
-    /// Zero gives all of them the exact form.
-    pub beam_switch: f32,
-    /// Tiles only: a pixel with less transmittance than this is saturated. What lies behind would change it by less
-    /// than this times its colour. Zero blends everything.
-    pub transmittance_min: f32,
+setters! {
+    /// The precision that a frame gives up for time.
+    #[derive(Debug, Clone, Copy, PartialEq)]
+    #[non_exhaustive]
+    pub struct Precision {
+        /// Format of the picture.
+        pub target: TargetFormat,
+        /// How spherical harmonics are stored. Takes effect in `Headless::load_as` and
+        /// `SceneBuffers::upload`, not frame by frame.
+        pub sh: ShFormat,
+        /// Phi of the exact mode.
+        pub phi: PhiForm,
+        /// How many bits of the depths the sort compares at most, 8 to 32; each pass takes eight. They count from the nearest
+        /// depth that the scene's bounds allow, so 24 lose nothing unless the farthest is more than four times as far.
+        pub key_bits: u32,
+        /// Exact mode: a cut splat gets the perspective-exact form where sigma_max / Z exceeds this, else the affine one.
+        /// Zero gives all of them the exact form.
+        pub beam_switch: f32,
+        /// Tiles only: a pixel with less transmittance than this is saturated. What lies behind would change it by less
+        /// than this times its colour. Zero blends everything.
+        pub transmittance_min: f32,
+    }
 }
-
-setters!(Precision {
-    target: TargetFormat,
-    sh: ShFormat,
-    phi: PhiForm,
-    key_bits: u32,
-    beam_switch: f32,
-    transmittance_min: f32,
-});
 
 impl Precision {
     /// Least peak signal to noise ratio, decibels, of a picture of this precision against its twin in f64: the smallest
     /// that one of the choices has by itself. Below it something else is wrong.
     pub fn least_psnr(&self) -> f64 {
-        let target: f64 = match self.target {
+        // How far the forms of a cut splat and saturation may be off is too little to be seen.
+        let (target, sh, phi, key_bits, _beam_switch, _transmittance_min) = self.fields();
+        let target: f64 = match target {
             TargetFormat::Unorm8 => 20.0,
             TargetFormat::Half => 40.0,
             TargetFormat::Float => 60.0,
         };
-        let sh = match self.sh {
+        let sh = match sh {
             ShFormat::Byte => 45.0,
             ShFormat::Half => 58.0,
             // A step of 511 of the degree's largest is far below what the others leave.
             ShFormat::Packed | ShFormat::Float => 60.0,
         };
-        let phi = match self.phi {
+        let phi = match phi {
             PhiForm::Logistic => 40.0,
             PhiForm::Cubic | PhiForm::Quintic => 60.0,
         };
-        let keys = match self.key_bits {
+        let keys = match key_bits {
             ..16 => 20.0,
             16..24 => 40.0,
             24..28 => 55.0,

@@ -100,53 +100,41 @@ pub enum ExactForm {
     Affine,
 }
 
-/// The options of a frame: start from the defaults and set what differs.
-///
-/// ```
-/// # use rara_scene as rara;
-/// use rara::{Mode, Settings};
-/// let settings = Settings::default().mode(Mode::Hard).trace_all(true);
-/// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub struct Settings {
-    /// How cut Gaussians are treated.
-    pub mode: Mode,
-    /// The quantity that the weight scales; `None` is the mode's own (linear for `rara`, depth for `exact`).
-    pub decay: Option<Decay>,
-    /// [`Mode::Rara`]: the traced ellipsoid, in standard deviations.
-    pub sigma: f32,
-    /// [`Mode::Rara`]: what a missed pixel keeps.
-    pub miss: Miss,
-    /// Ablation: treat every Gaussian as cutoff.
-    pub trace_all: bool,
-    /// [`Mode::Exact`]: the form of the weight.
-    pub form: ExactForm,
-    /// Opaque background colour; `None` is transparent.
-    pub background: Option<[f32; 3]>,
-    /// Highest spherical-harmonics degree to evaluate; `None` is the scene's own.
-    pub sh_degree: Option<u32>,
-    /// How splats become pixels.
-    pub raster: Raster,
-    /// Colours, or a debug view.
-    pub show: Show,
-    /// How precise the frame is.
-    pub precision: Precision,
+setters! {
+    /// The options of a frame: start from the defaults and set what differs.
+    ///
+    /// ```
+    /// # use rara_scene as rara;
+    /// use rara::{Mode, Settings};
+    /// let settings = Settings::default().mode(Mode::Hard).trace_all(true);
+    /// ```
+    #[derive(Debug, Clone, Copy, PartialEq)]
+    #[non_exhaustive]
+    pub struct Settings {
+        /// How cut Gaussians are treated.
+        pub mode: Mode,
+        /// The quantity that the weight scales; `None` is the mode's own (linear for `rara`, depth for `exact`).
+        pub decay: Option<Decay>,
+        /// [`Mode::Rara`]: the traced ellipsoid, in standard deviations.
+        pub sigma: f32,
+        /// [`Mode::Rara`]: what a missed pixel keeps.
+        pub miss: Miss,
+        /// Ablation: treat every Gaussian as cutoff.
+        pub trace_all: bool,
+        /// [`Mode::Exact`]: the form of the weight.
+        pub form: ExactForm,
+        /// Opaque background colour; `None` is transparent.
+        pub background: Option<[f32; 3]>,
+        /// Highest spherical-harmonics degree to evaluate; `None` is the scene's own.
+        pub sh_degree: Option<u32>,
+        /// How splats become pixels.
+        pub raster: Raster,
+        /// Colours, or a debug view.
+        pub show: Show,
+        /// How precise the frame is.
+        pub precision: Precision,
+    }
 }
-
-setters!(Settings {
-    mode: Mode,
-    decay: Option<Decay>,
-    sigma: f32,
-    miss: Miss,
-    trace_all: bool,
-    form: ExactForm,
-    background: Option<[f32; 3]>,
-    sh_degree: Option<u32>,
-    raster: Raster,
-    show: Show,
-    precision: Precision,
-});
 
 impl Default for Settings {
     fn default() -> Self {

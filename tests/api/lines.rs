@@ -57,20 +57,18 @@ pub(super) fn implemented(block: &syn::ItemImpl) -> Vec<String> {
     lines
 }
 
-/// The type and the methods of `setters!(Type { field: Value, })`.
+/// The type and the methods of `setters!`, around a struct or of `Type { field: Value, }`.
 pub(super) fn setters(tokens: &str) -> (String, Vec<String>) {
-    let text = squeezed(tokens);
-    let (name, fields) = text.split_once('{').expect("setters of a type");
-    let item = format!("struct {name} {{ {}", fields);
-    let item: syn::ItemStruct = syn::parse_str(&item).expect("fields");
+    let listed = || syn::parse_str(&format!("struct {tokens}"));
+    let item: syn::ItemStruct = syn::parse_str(tokens)
+        .or_else(|_| listed())
+        .expect("fields");
     let method = |field: &syn::Field| {
         let name = field.ident.as_ref().expect("a name");
         format!("fn {name}(self, {name}: {}) -> Self", tidy(&field.ty))
     };
-    (
-        name.trim().to_owned(),
-        item.fields.iter().map(method).collect(),
-    )
+    let methods = item.fields.iter().map(method).collect();
+    (item.ident.to_string(), methods)
 }
 
 /// The segments of a type's path.

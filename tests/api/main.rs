@@ -96,6 +96,11 @@ impl Library {
                         self.imports.insert((path.to_owned(), name), from);
                     }
                 }
+                // Those of the macro stand around the struct itself, which is an item as any other.
+                Item::Macro(call) if call.mac.path.is_ident("setters") => {
+                    let of = call.mac.parse_body::<syn::ItemStruct>();
+                    kept.extend(of.ok().map(Item::Struct));
+                }
                 _ => {}
             }
             kept.push(item);

@@ -71,6 +71,33 @@ fn every_row_names_a_flag() {
     }
 }
 
+/// The short help of such a flag begins with the mode or the raster.
+#[test]
+fn every_flag_whose_help_names_its_mode_or_raster_has_a_row() {
+    let mut found = 0;
+    for command in commands() {
+        for flag in flags(&command) {
+            let help = flag.get_help().map(ToString::to_string);
+            let help = help.unwrap_or_default();
+            let Some((case, _)) = help.split_once(": ") else {
+                continue;
+            };
+            let need = match case.split_once(' ').unwrap_or((case, "")) {
+                ("Mode", mode) => ("mode", mode),
+                ("Tiles", _) => ("raster", "tiles"),
+                _ => continue,
+            };
+            let (id, name) = (flag.get_id().as_str(), command.get_name());
+            let row = NEEDS.iter().find(|(flag, _)| *flag == id);
+            let is_needed = matches!(row, Some((_, Value(flag, values)))
+                if *flag == need.0 && values.contains(&need.1));
+            assert!(is_needed, "{name} --{id} needs --{} {}", need.0, need.1);
+            found += 1;
+        }
+    }
+    assert!(found > 10, "{found}");
+}
+
 #[test]
 fn a_flag_without_what_it_needs_is_refused_or_noted_by_both_names() {
     let mut found = 0;

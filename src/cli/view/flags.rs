@@ -5,7 +5,8 @@ use rara::{Camera, ClipOp, Precision, Preset, Settings};
 
 use super::camera_flags;
 use super::layers::Clips;
-use crate::settings::name;
+use crate::precision::differences;
+use crate::settings;
 
 /// The flags of `rara render` for clips, the planes of the camera among them, layers and settings, as a user would type them.
 /// They leave out defaults.
@@ -23,8 +24,7 @@ pub(super) fn flags(camera: &Camera, clips: &Clips, settings: &Settings) -> Stri
         flags.push("--clip-op or".into());
     }
     flags.extend(clips.flags());
-    flags.push(format!("--mode {}", name(settings.mode)));
-    add_settings(&mut flags, settings);
+    flags.extend(settings::flags(settings));
     add_precision(&mut flags, &settings.precision);
     flags.join(" ")
 }
@@ -43,39 +43,6 @@ pub(super) fn lines(camera: &Camera, clips: &Clips, settings: &Settings) -> Stri
     lines + &notes.unwrap_or_default()
 }
 
-fn add_settings(flags: &mut Vec<String>, own: &Settings) {
-    let default = Settings::default();
-    let values = [
-        ("decay", own.decay.map(name)),
-        ("sigma", changed(own.sigma, default.sigma).map(text)),
-        ("miss", changed(own.miss, default.miss).map(name)),
-        ("trace-all", own.trace_all.then(String::new)),
-        (
-            "background",
-            own.background.map(|[r, g, b]| format!("{r},{g},{b}")),
-        ),
-        ("sh-degree", own.sh_degree.map(text)),
-        ("raster", changed(own.raster, default.raster).map(name)),
-        ("show", changed(own.show, default.show).map(name)),
-    ];
-    flags.extend(typed(values));
-}
-
-fn changed<T: PartialEq>(value: T, default: T) -> Option<T> {
-    (value != default).then_some(value)
-}
-
-fn text(value: impl ToString) -> String {
-    value.to_string()
-}
-
-/// The flags that have a value, which is empty for those that take none.
-fn typed<const N: usize>(values: [(&str, Option<String>); N]) -> impl Iterator<Item = String> {
-    let flag = |(name, value): (&str, Option<String>)| Some(format!("--{name} {}", value?));
-    let flags = values.map(flag).into_iter().flatten();
-    flags.map(|flag| flag.trim_end().into())
-}
-
 /// Adds the preset that leaves the fewest single flags, and those flags.
 fn add_precision(flags: &mut Vec<String>, precision: &Precision) {
     // The default preset comes first, since it needs no flag.
@@ -86,30 +53,11 @@ fn add_precision(flags: &mut Vec<String>, precision: &Precision) {
     ];
     let written = presets.map(|(preset, flag)| {
         let mut flags: Vec<String> = flag.map(Into::into).into_iter().collect();
-        flags.extend(differences(precision, &preset.precision()));
+        flags.extend(differences(*precision, preset.precision()));
         flags
     });
     let fewest = written.into_iter().min_by_key(Vec::len);
     flags.extend(fewest.unwrap_or_default());
-}
-
-/// The single flags that make `preset` into `own`.
-fn differences(own: &Precision, preset: &Precision) -> impl Iterator<Item = String> {
-    let (switch, least) = (preset.beam_switch, preset.transmittance_min);
-    typed([
-        (
-            "target-format",
-            changed(own.target, preset.target).map(name),
-        ),
-        ("sh-format", changed(own.sh, preset.sh).map(name)),
-        ("phi", changed(own.phi, preset.phi).map(name)),
-        ("key-bits", changed(own.key_bits, preset.key_bits).map(text)),
-        ("beam-switch", changed(own.beam_switch, switch).map(text)),
-        (
-            "transmittance-min",
-            changed(own.transmittance_min, least).map(text),
-        ),
-    ])
 }
 
 #[cfg(test)]

@@ -110,4 +110,26 @@ mod tests {
             }
         }
     }
+
+    #[test]
+    fn every_choice_of_precision_is_compared_by_itself() {
+        let usual = Settings::default().precision;
+        let mut counts = [0; 6];
+        for variant in variants(Settings::default()) {
+            let own = variant.settings.precision;
+            let (target, sh, phi, key_bits, beam_switch, transmittance_min) = own.fields();
+            let singles = [
+                usual.target(target),
+                usual.sh(sh),
+                usual.phi(phi),
+                usual.key_bits(key_bits),
+                usual.beam_switch(beam_switch),
+                usual.transmittance_min(transmittance_min),
+            ];
+            for (count, single) in counts.iter_mut().zip(singles) {
+                *count += usize::from(own != usual && own == single);
+            }
+        }
+        assert!(!counts.contains(&0), "{counts:?}");
+    }
 }

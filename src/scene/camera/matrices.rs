@@ -14,28 +14,24 @@ use rara_base::error::{Error, Result};
 use rara_base::limits::NEAR_Z;
 use rara_base::setters;
 
-/// What a host's matrices do not say of its clip space, after the division by w: its normalised device coordinates.
-///
-/// The default is [`VULKAN`](Self::VULKAN).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-#[non_exhaustive]
-pub struct Ndc {
-    /// A y of 1 is the picture's upper edge, as in Direct3D, Metal, WebGPU and OpenGL, and in Vulkan with a viewport of
-    /// negative height. Otherwise it is the lower one.
-    pub y_up: bool,
-    /// Depths go from -1 to 1, as in OpenGL and by `VK_EXT_depth_clip_control`, and the buffer holds `(z + 1) / 2`. Otherwise
-    /// they go from 0 to 1, and the buffer holds them.
-    pub negative_one_to_one: bool,
-    /// Nearer is more in the depth buffer. It is asked of orthographic projections alone, whose matrix is the same for one
-    /// that looks the other way; that of a perspective one says it.
-    pub reversed: bool,
+setters! {
+    /// What a host's matrices do not say of its clip space, after the division by w: its normalised device coordinates.
+    ///
+    /// The default is [`VULKAN`](Self::VULKAN).
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+    #[non_exhaustive]
+    pub struct Ndc {
+        /// A y of 1 is the picture's upper edge, as in Direct3D, Metal, WebGPU and OpenGL, and in Vulkan with a viewport of
+        /// negative height. Otherwise it is the lower one.
+        pub y_up: bool,
+        /// Depths go from -1 to 1, as in OpenGL and by `VK_EXT_depth_clip_control`, and the buffer holds `(z + 1) / 2`.
+        /// Otherwise they go from 0 to 1, and the buffer holds them.
+        pub negative_one_to_one: bool,
+        /// Nearer is more in the depth buffer. It is asked of orthographic projections alone, whose matrix is the same for one
+        /// that looks the other way; that of a perspective one says it.
+        pub reversed: bool,
+    }
 }
-
-setters!(Ndc {
-    y_up: bool,
-    negative_one_to_one: bool,
-    reversed: bool,
-});
 
 impl Ndc {
     /// y down, depths from 0 to 1.

@@ -22,8 +22,8 @@ fn a_gaussian_of_degree_3_takes_at_most_120_bytes_in_the_default_preset() {
         headless.load_as(scene, format).expect("uploads");
         headless.scene_bytes() as f64 / scene.len() as f64
     };
-    // A block of 256 has bounds of 32 bytes, and the last one is not full.
-    let blocks = 0.13;
+    // A block of 256 has 48 bytes, and the last one is not full.
+    let blocks = 0.193;
     for (preset, most) in [
         (Preset::Exact, 240.0 + blocks),
         (Preset::Balanced, 120.0),

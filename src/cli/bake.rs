@@ -20,8 +20,8 @@ use super::scene_file::LayerEntry;
 use super::scene_layers::SceneLayers;
 use super::scenes::SceneArgs;
 use super::select::{self, LayerRemains};
-use super::settings::{DeviceArgs, name};
-use super::values;
+use super::settings::DeviceArgs;
+use super::values::{self, name};
 
 /// Write a scene that shows a cut in any viewer
 #[derive(Debug, Args)]

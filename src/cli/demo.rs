@@ -20,7 +20,7 @@ use super::output::{self, counted, grouped, say};
 use super::scene_layers::SceneLayers;
 use super::scenes;
 use super::session::Session;
-use super::settings::name;
+use super::values::name;
 use super::{sheet, times};
 
 /// Draw a scene cut through its middle in all four modes, and measure them

@@ -3,9 +3,9 @@
 use clap::Args;
 use rara::{PhiForm, Precision, Preset, ShFormat, TargetFormat};
 
-#[cfg(feature = "view")]
-use super::settings::{flag, name, text};
 use super::values;
+#[cfg(feature = "view")]
+use super::values::{flag, name, text};
 
 /// The precision that is given up for time. A single choice overrides the preset's.
 #[derive(Debug, Args)]

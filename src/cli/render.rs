@@ -25,8 +25,8 @@ use super::save_camera::SaveCameraArgs;
 use super::scenes::SceneArgs;
 use super::section::{Section, SectionArgs, Sections};
 use super::session::{Repeat, Session};
-use super::settings::name;
 use super::slice::{Cut, SliceArgs, Slicer};
+use super::values::name;
 use super::views::{NamedView, Views};
 
 /// Draw one picture, one for each camera of a file, or a film

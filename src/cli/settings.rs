@@ -1,10 +1,12 @@
 //! The flags that say how a frame is drawn, and on which device.
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use rara::{Decay, HeadlessDesc, Miss, Mode, PipelineCache, Raster, Settings, Show};
 
 use super::failure::Failure;
 use super::precision::PrecisionArgs;
+#[cfg(feature = "view")]
+use super::values::{flag, name, text};
 use super::{output, values};
 
 /// How to draw.
@@ -72,30 +74,6 @@ pub(super) struct DeviceArgs {
     /// that is empty, nowhere), else in the user's cache folder.
     #[arg(long)]
     no_pipeline_cache: bool,
-}
-
-/// The name of a value on the command line and in the statistics.
-pub(super) fn name(value: impl ValueEnum) -> String {
-    let value = value.to_possible_value();
-    value.map_or_else(String::new, |value| value.get_name().into())
-}
-
-/// The flag of a value that is not the default, as a user would type it.
-#[cfg(feature = "view")]
-pub(super) fn flag<T: PartialEq>(
-    flag: &str,
-    own: T,
-    default: T,
-    text: impl Fn(T) -> String,
-) -> Option<String> {
-    let own = (own != default).then(|| text(own))?;
-    Some(format!("--{flag} {own}"))
-}
-
-/// A number on the command line.
-#[cfg(feature = "view")]
-pub(super) fn text(number: impl ToString) -> String {
-    number.to_string()
 }
 
 /// The flags of the settings that are not the default, as a user would type them; the mode always, the precision never.

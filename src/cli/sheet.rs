@@ -50,7 +50,7 @@ fn set(picture: &mut Picture, x: u32, y: u32, pixel: [f32; 4]) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::settings::name;
+    use super::super::values::name;
     use super::*;
     use clap::ValueEnum as _;
     use rara::Mode;

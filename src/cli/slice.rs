@@ -10,8 +10,7 @@ use rara_lab::frames;
 use super::combine::FrameSummary;
 use super::failure::Failure;
 use super::session::{Repeat, Session};
-use super::settings::name;
-use super::values;
+use super::values::{self, name};
 use super::views::NamedView;
 
 /// What is shown of a section's plane.

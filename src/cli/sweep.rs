@@ -21,8 +21,7 @@ use super::region::Region;
 use super::report::{FrameRecord, RenderReport};
 use super::save_camera::SaveCameraArgs;
 use super::scenes::SceneArgs;
-use super::settings::name;
-use super::values;
+use super::values::{self, name};
 use super::views::Views;
 use rara::scene::extent_along;
 

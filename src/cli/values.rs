@@ -1,9 +1,10 @@
-//! Parsers of the values that flags take.
+//! The values that flags take: their parsers, and their texts.
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
+use clap::ValueEnum;
 use clap::builder::{OsStringValueParser, TypedValueParser};
 use glam::{DQuat, DVec3};
 
@@ -194,6 +195,30 @@ pub(super) const STANDARD: &str = "-";
 
 pub(super) fn picture_file() -> impl TypedValueParser<Value = PathBuf> {
     OsStringValueParser::new().try_map(picture_path)
+}
+
+/// The name of a value on the command line and in the statistics.
+pub(super) fn name(value: impl ValueEnum) -> String {
+    let value = value.to_possible_value();
+    value.map_or_else(String::new, |value| value.get_name().into())
+}
+
+/// The flag of a value that is not the default, as a user would type it.
+#[cfg(feature = "view")]
+pub(super) fn flag<T: PartialEq>(
+    flag: &str,
+    own: T,
+    default: T,
+    text: impl Fn(T) -> String,
+) -> Option<String> {
+    let own = (own != default).then(|| text(own))?;
+    Some(format!("--{flag} {own}"))
+}
+
+/// A number on the command line.
+#[cfg(feature = "view")]
+pub(super) fn text(number: impl ToString) -> String {
+    number.to_string()
 }
 
 #[cfg(test)]

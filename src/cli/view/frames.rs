@@ -12,7 +12,7 @@ use super::stage::Viewer;
 use super::text::ProgressBar;
 use super::title;
 use crate::failure::Failure;
-use crate::settings;
+use crate::values;
 
 /// The title changes no more often than this, since each change costs the window system a message.
 const TITLE_PAUSE: Duration = Duration::from_millis(200);
@@ -137,7 +137,7 @@ impl Viewer {
 
     fn entitle(&self) {
         let Scenery { name, clips, .. } = &self.scenery;
-        let mode = settings::name(self.manner.settings.mode);
+        let mode = values::name(self.manner.settings.mode);
         let stats = self.windowed.stats();
         let text = title::title(name, &mode, clips.words().as_deref(), stats);
         self.window.set_title(&text);

@@ -8,7 +8,7 @@ use super::input::KEYS;
 use super::layers::Clips;
 use super::numbers;
 use super::text::{self, ProgressBar, Type};
-use crate::{settings, times};
+use crate::{times, values};
 
 const HINT: &str = "H: keys   M: numbers   drop a file to open it";
 /// The hint goes away after this time with a scene.
@@ -166,7 +166,7 @@ fn lines(clips: &Clips, mode: Mode, stats: Option<&FrameStats>) -> Vec<String> {
     let took = took.map(|ms| format!(", last frame {} ms", times::ms(Some(ms), 1)));
     let mut lines = vec![format!(
         "mode {}{}",
-        settings::name(mode),
+        values::name(mode),
         took.unwrap_or_default()
     )];
     let words = clips.words();

@@ -7,7 +7,7 @@
 
 // Keys of an invocation.
 const uint RADIX_KEYS = RADIX_PARTITION / RADIX_GROUP_SIZE;
-// Of those, how many it waits for together where it needs more than the keys.
+// It waits for so many of them together, where it needs more than the keys.
 const uint KEYS_AT_ONCE = 4u;
 
 // p is the number of a partition.

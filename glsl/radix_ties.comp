@@ -23,8 +23,6 @@ BUFFER(writeonly, 9, uint, tie_members)
 
 // Most that an invocation orders alone: its numbers have room in its part of `items`.
 const uint FEW = RADIX_PARTITION / RADIX_GROUP_SIZE;
-// Of those, how many it waits for together.
-const uint AT_ONCE = 4u;
 
 // The first of each many that begin in this partition.
 shared uint begins[RADIX_PARTITION / FEW];
@@ -100,7 +98,7 @@ uint end_of_few(uint begin) {
     bool same = true;
     while (same && size <= FEW) {
         uint first = begin + size;
-        for (uint k = 0u; k < AT_ONCE; k++) {
+        for (uint k = 0u; k < KEYS_AT_ONCE; k++) {
             uint here = keys.at[min(first + k, count - 1u)];
             same = same && first + k < count && here == key;
             size += same ? 1u : 0u;
@@ -116,25 +114,25 @@ uint few_place(uint k) {
 
 void order_alone(uint begin, uint end) {
     uint size = end - begin;
-    uint own[AT_ONCE];
-    uint its_numbers[AT_ONCE];
-    for (uint first = 0u; first < size; first += AT_ONCE) {
-        for (uint k = 0u; k < AT_ONCE; k++) {
+    uint own[KEYS_AT_ONCE];
+    uint its_numbers[KEYS_AT_ONCE];
+    for (uint first = 0u; first < size; first += KEYS_AT_ONCE) {
+        for (uint k = 0u; k < KEYS_AT_ONCE; k++) {
             own[k] = order.at[min(begin + first + k, end - 1u)];
             its_numbers[k] = number(own[k]);
         }
-        for (uint k = 0u; k < AT_ONCE; k++) {
+        for (uint k = 0u; k < KEYS_AT_ONCE; k++) {
             // Those beyond the end write the last one once more.
             uint place = min(first + k, size - 1u);
             scratch.at[begin + place] = own[k];
             items[few_place(place)] = its_numbers[k];
         }
     }
-    for (uint first = 0u; first < size; first += AT_ONCE) {
-        for (uint k = 0u; k < AT_ONCE; k++) {
+    for (uint first = 0u; first < size; first += KEYS_AT_ONCE) {
+        for (uint k = 0u; k < KEYS_AT_ONCE; k++) {
             own[k] = scratch.at[min(begin + first + k, end - 1u)];
         }
-        for (uint k = 0u; k < AT_ONCE; k++) {
+        for (uint k = 0u; k < KEYS_AT_ONCE; k++) {
             uint its_number = items[few_place(min(first + k, size - 1u))];
             uint rank = 0u;
             for (uint other = 0u; other < size; other++) {

@@ -31,7 +31,7 @@ setters! {
     #[derive(Debug, Clone, Copy, PartialEq)]
     #[non_exhaustive]
     pub struct BakeSettings {
-        /// Which Gaussians are cut: those that a frame of this mode cuts. [`Mode::Hard`] cuts none, so that Gaussians stay
+        /// The Gaussians that a frame of this mode cuts are cut. [`Mode::Hard`] cuts none, so that Gaussians stay
         /// or go by their centres, and [`Mode::None`] keeps all.
         pub mode: Mode,
         /// [`Mode::Rara`]: the traced ellipsoid, in standard deviations.

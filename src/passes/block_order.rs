@@ -110,7 +110,7 @@ fn most_spanning_scale(scene: &Gaussians) -> f32 {
 /// deviation a and b and `x` the square of the scale, its opacity is multiplied by at least the root of
 /// `a²x / (a²x + L) · b²x / (b²x + L)` (glsl/block.glsl). That this is the share that is needed is a quadratic equation in x.
 fn spanning_scale(scene: &Gaussians, index: usize) -> f32 {
-    /// By how much single precision may find the opacity too small.
+    /// Single precision may find the opacity too small by this factor.
     const MARGIN: f64 = 1.05;
     if !scene.is_antialiased() {
         return 0.0;

@@ -33,7 +33,7 @@ setters! {
         /// Format of the colour attachment that [`Renderer::draw`](super::Renderer::draw) draws into. It must be blendable;
         /// splats are trained to be blended as stored, so sRGB formats, which blend in linear light, give another picture.
         pub color_format: vk::Format,
-        /// What the attachment's numbers stand for.
+        /// The meaning of the attachment's numbers.
         pub color_space: ColorSpace,
         /// The depth attachment of the host's scope, which splats are tested against; `None` if it has none.
         pub depth: Option<DepthDesc>,

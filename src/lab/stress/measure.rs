@@ -204,7 +204,7 @@ fn truth(case: &Case, clip: &Clip, settings: &Settings) -> rara_reference::Refer
     rara_reference::render::<f64>(&case.scene, &case.camera, clip, settings)
 }
 
-/// What a thread has computed.
+/// Waits for a thread and returns what it has computed.
 fn joined<T>(thread: ScopedJoinHandle<'_, T>) -> T {
     thread
         .join()

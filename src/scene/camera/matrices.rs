@@ -15,7 +15,7 @@ use rara_base::limits::NEAR_Z;
 use rara_base::setters;
 
 setters! {
-    /// What a host's matrices do not say of its clip space, after the division by w: its normalised device coordinates.
+    /// The normalised device coordinates of a host, its clip space after the division by w, which its matrices do not describe.
     ///
     /// The default is [`VULKAN`](Self::VULKAN).
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]

@@ -94,7 +94,7 @@ const TILE: u64 = (limits::TILE_WIDTH * limits::TILE_HEIGHT) as u64;
 // Counts within a workgroup.
 const DIGITS: u64 = 1 << limits::SORT_BITS;
 const KEYS: u64 = (limits::RADIX_PARTITION / limits::RADIX_GROUP_SIZE) as u64;
-/// Those of them whose loads it waits for together, as in glsl/radix.glsl.
+/// It waits for the loads of so many of them together, as in glsl/radix.glsl.
 const KEYS_AT_ONCE: u64 = 4;
 /// Chunks of splats in a partition, as in glsl/macro_tiles.glsl.
 const CHUNKS: u64 = KEYS;
@@ -437,7 +437,7 @@ fn most_of_ties(n: &FrameNumbers) -> u64 {
     // A splat, its Gaussian and the number of that.
     let number = 3;
     let together = n.tied.min(n.least_large_tie());
-    let alone = together.min(KEYS).div_ceil(4) * (1 + number + 1);
+    let alone = together.min(KEYS).div_ceil(KEYS_AT_ONCE) * (1 + number + 1);
     if together <= KEYS {
         return alone;
     }

@@ -6,7 +6,6 @@ use glam::DVec3;
 /// in DICOM's coordinates, whose x points to the patient's left, y to the back and z to the head.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Axis {
-    /// The axis as it was typed.
     pub(super) name: String,
     pub(super) along: DVec3,
     /// The view's direction, along the axis or against it.

@@ -13,7 +13,6 @@ use super::views::{Framing, NamedView, Views, picked};
 use super::{aspect, output, training, values};
 use rara::camera_files;
 
-/// The heading of these flags in the help.
 pub(super) const HEADING: &str = "Camera";
 
 /// The camera's position and lens. Without any of these it frames what is visible of the scene.
@@ -94,7 +93,6 @@ pub(super) struct CameraArgs {
     is_around: bool,
 }
 
-/// Picture size where neither a flag nor a file gives one.
 const DEFAULT_SIZE: (u32, u32) = (1024, 1024);
 /// Degrees.
 pub(super) const FOV_Y: f64 = 50.0;
@@ -149,7 +147,6 @@ impl CameraArgs {
             || self.fov_y != FOV_Y
     }
 
-    /// The direction that is up in the picture, if a flag says it.
     pub(super) fn chosen_up(&self) -> Option<DVec3> {
         self.up
     }
@@ -158,7 +155,6 @@ impl CameraArgs {
         self.view.as_deref()
     }
 
-    /// The size of the picture, if a flag says it.
     pub(super) fn size(&self) -> Option<(u32, u32)> {
         self.size
     }
@@ -298,7 +294,6 @@ impl CameraArgs {
     }
 }
 
-/// The only camera of a file.
 fn only(path: &Path, scenes: &[PathBuf]) -> Result<Camera, Failure> {
     let error = match camera_files::load_camera(path) {
         Ok(camera) => return Ok(camera),

@@ -63,7 +63,6 @@ pub(super) struct Regions {
     op: ClipOp,
     /// The clips of single layers that files have.
     layers: Vec<(String, LayerClip)>,
-    /// The file that it is saved to.
     save: Option<PathBuf>,
 }
 
@@ -205,7 +204,6 @@ pub(super) fn are_alternatives(clips: &[NamedClip]) -> bool {
     of_all > 1 && named.any(|(number, clip)| clip.name != number.to_string())
 }
 
-/// All clips of a file.
 fn load(path: &Path) -> Result<Vec<NamedClip>, Failure> {
     load_clips(path).map_err(|error| JsonKind::Clips.wanted(path, error))
 }

@@ -73,7 +73,6 @@ impl From<Comparison> for Measures {
 }
 
 impl Measures {
-    /// The PSNR for people.
     pub(super) fn psnr_text(&self) -> String {
         self.psnr
             .map_or("equal".into(), |psnr| format!("{psnr:.2}"))

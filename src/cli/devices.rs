@@ -27,7 +27,6 @@ struct DeviceRow {
     driver: String,
     kind: &'static str,
     supported: bool,
-    /// The requirement that the device lacks.
     problem: Option<String>,
 }
 

@@ -82,7 +82,6 @@ struct LayerFacts {
     visible: bool,
     /// Whether it was trained antialiased and is drawn so.
     antialiased: bool,
-    /// Whether it has a clip of its own.
     clipped: bool,
     /// What else there is to say of it, where it is one of several.
     #[serde(rename = "statistics", skip_serializing_if = "Option::is_none")]
@@ -163,7 +162,6 @@ impl Facts {
         }
     }
 
-    /// The lines for people.
     fn lines(&self) -> Vec<String> {
         let corner = |[x, y, z]: [f64; 3]| format!("{x:.4}, {y:.4}, {z:.4}");
         let extent = |e: Extent| format!("({}) to ({})", corner(e.min), corner(e.max));
@@ -226,7 +224,6 @@ impl Info {
     }
 }
 
-/// The lines for people.
 fn table(document: &InfoJson) -> Vec<String> {
     let mut lines = Vec::new();
     lines.push(format!(

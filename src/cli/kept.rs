@@ -85,14 +85,12 @@ impl SessionCache {
         Ok(())
     }
 
-    /// Closes the session that is left.
     pub(super) fn close(&mut self) -> Result<()> {
         self.last.take().map_or(Ok(()), |(place, _)| place.close())
     }
 }
 
 impl ScenePlace {
-    /// The session that draws the scene.
     pub(super) fn open(
         &mut self,
         profile: &Profile,

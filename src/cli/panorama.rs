@@ -27,10 +27,8 @@ pub(super) struct PanoramaArgs {
     panorama: bool,
 }
 
-/// The greatest width of pictures.
 const MOST: u32 = Camera::MAX_SIZE;
 
-/// The size where no other is given.
 const SIZE: (u32, u32) = (2048, 1024);
 
 /// How far the pictures overlap on either side of the edge between two, as a share of half a picture.
@@ -73,14 +71,12 @@ const FACES: [(&str, [DVec3; 3]); 6] = [
 ];
 
 impl Panorama {
-    /// The pictures that one is made of.
     pub(super) const FACES: usize = FACES.len();
 
     pub(super) fn size(self) -> (u32, u32) {
         (self.width, self.width / 2)
     }
 
-    /// Pixels of the pictures that one is made of.
     pub(super) fn kept_pixels(self) -> u64 {
         let (half, margin) = self.half();
         let side = 2 * (half + margin) as u64;
@@ -137,7 +133,6 @@ impl Panorama {
         panorama
     }
 
-    /// The mean over a pixel.
     fn pixel(self, faces: &[Picture], (x, y): (usize, usize)) -> [f32; 4] {
         let mut sum = [0.0; 4];
         for sample in 0..SAMPLES * SAMPLES {

@@ -17,9 +17,7 @@ use super::views::NamedView;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Answer {
-    /// A table for people.
     Table,
-    /// One JSON document.
     Document,
     /// A line of JSON for each picture, when it is done.
     Lines,
@@ -260,7 +258,6 @@ impl RenderReport {
     }
 }
 
-/// The table for people.
 impl fmt::Display for RenderReport {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let Self { scene, memory, .. } = self;
@@ -350,7 +347,6 @@ impl fmt::Display for CountsText<'_> {
     }
 }
 
-/// The line that says where the pictures went.
 fn wrote(paths: &[PathBuf]) -> String {
     match paths {
         [] => "wrote    nothing (no -o)".into(),

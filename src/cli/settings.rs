@@ -122,7 +122,6 @@ impl SettingsArgs {
 }
 
 impl LookArgs {
-    /// The default settings with this look.
     pub(super) fn meant(&self) -> Result<Settings, Failure> {
         Ok(Settings::default()
             .background(self.background)
@@ -134,7 +133,6 @@ impl LookArgs {
 }
 
 impl DeviceArgs {
-    /// The description of the device to open.
     pub(super) fn meant(&self) -> HeadlessDesc {
         HeadlessDesc::default()
             .device(self.device.clone())

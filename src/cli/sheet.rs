@@ -9,7 +9,6 @@ const GAP: u32 = 4;
 /// Colour of what is between the pictures.
 const MARGIN: [f32; 4] = [0.25, 0.25, 0.25, 1.0];
 const INK: [u8; 3] = [255; 3];
-/// How far the lower row is magnified.
 pub(super) const ZOOM: u32 = 6;
 
 /// Pictures of one size with their labels, and under each the same piece of it, magnified; `corner` is the piece's

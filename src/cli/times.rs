@@ -7,7 +7,6 @@ pub(super) fn ms(time: Option<f64>, decimals: usize) -> String {
     time.map_or_else(|| "-".into(), |ms| format!("{ms:.decimals$}"))
 }
 
-/// All of these together.
 pub(super) fn sum(times: impl IntoIterator<Item = f64>) -> f64 {
     // The iterator's own `sum` of nothing is -0.
     times.into_iter().fold(0.0, |sum, ms| sum + ms)

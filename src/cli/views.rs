@@ -19,7 +19,6 @@ pub(super) struct NamedView {
     pub(super) camera: Camera,
 }
 
-/// The cameras that the flags mean.
 #[derive(Debug)]
 pub(super) enum Views {
     /// Cameras that are known before the scene is loaded.

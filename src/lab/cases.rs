@@ -64,7 +64,6 @@ pub(crate) fn different(names: impl IntoIterator<Item = String>) -> Vec<String> 
     all
 }
 
-/// A name for each case, all different.
 pub(crate) fn names(sources: &[Source], cases: &[Case]) -> Vec<String> {
     let of = |case: &Case| format!("{}, {}", sources[case.scene].name, case.cut.name());
     different(cases.iter().map(of))

@@ -26,7 +26,6 @@ pub fn fresh(
     headless.render(camera, clip, settings)
 }
 
-/// Draws such a frame and reads its picture back.
 pub fn picture(
     headless: &mut Headless,
     camera: &Camera,

@@ -21,7 +21,6 @@ pub fn error_map(a: &Picture, b: &Picture) -> Result<Picture> {
     Ok(map)
 }
 
-/// The scale from left to right, for a legend.
 pub fn scale(width: u32, height: u32) -> Picture {
     let mut picture = Picture::filled(width, height, [1.0; 4]);
     for (i, pixel) in picture.pixels.iter_mut().enumerate() {
@@ -31,7 +30,6 @@ pub fn scale(width: u32, height: u32) -> Picture {
     picture
 }
 
-/// The place of a difference on the scale, 0 to 1.
 pub fn place(difference: f64) -> f64 {
     ((difference / LEAST).ln() / (MOST / LEAST).ln()).clamp(0.0, 1.0)
 }

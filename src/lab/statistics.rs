@@ -2,7 +2,6 @@
 
 use statrs::distribution::{ContinuousCDF, Normal};
 
-/// The arithmetic mean; `None` of nothing.
 pub fn mean(values: &[f64]) -> Option<f64> {
     (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
 }
@@ -38,7 +37,6 @@ pub fn cohens_d(values: &[f64]) -> Option<f64> {
     Some(mean(values)? / deviation)
 }
 
-/// The result of Wilcoxon's signed-rank test.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Wilcoxon {
     /// The number of values that are not 0.

@@ -7,7 +7,6 @@ use serde::{Deserialize, Serialize};
 /// A table with its title and what has to be known to read it.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Table {
-    /// What stands above it.
     pub title: String,
     /// What the columns mean and where the numbers are from; may be empty.
     pub note: String,
@@ -17,7 +16,6 @@ pub struct Table {
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Cell {
-    /// Words.
     Text(String),
     /// A measured number, which people see with three significant digits and programs as it is; `None` where nothing was
     /// measured.
@@ -83,7 +81,6 @@ impl Cell {
 }
 
 impl Table {
-    /// A table without rows.
     pub fn new<C: Into<String>>(
         title: impl Into<String>,
         note: impl Into<String>,

@@ -31,7 +31,6 @@ const REFUSED: [&str; 6] = [
 pub(super) struct Job {
     /// Messages call it by its file and its number there.
     pub(super) name: String,
-    /// The words of its command line.
     pub(super) words: Vec<OsString>,
 }
 

@@ -69,7 +69,6 @@ pub(super) struct Batch {
     json: bool,
 }
 
-/// A job and its pictures.
 struct JobPlan {
     job: Job,
     /// A short text stands for its own.
@@ -346,7 +345,6 @@ fn done(planned: &[JobPlan], share: &[(usize, usize)], state: &State) -> Vec<Pic
     share.iter().map(of).collect()
 }
 
-/// The pictures of a share that are not there.
 fn missing<'a>(planned: &'a [JobPlan], share: &[(usize, usize)], state: &State) -> Vec<&'a str> {
     let name = |(job, index): &(usize, usize)| planned[*job].plan.pictures[*index].1.as_str();
     let entry = |name: &str| state.entries.get(name);
@@ -354,7 +352,6 @@ fn missing<'a>(planned: &'a [JobPlan], share: &[(usize, usize)], state: &State) 
     share.iter().map(name).filter(is_missing).collect()
 }
 
-/// Fails where something is missing.
 fn refuse(missing: &[&str]) -> Result<(), Failure> {
     /// The number of names that fit on a line.
     const NAMED: usize = 5;
@@ -419,7 +416,6 @@ fn draw(planned: &[JobPlan], folder: &Path, state: &State, prints: bool) -> Resu
     Ok(kept.close()?)
 }
 
-/// A run over all jobs.
 struct Run<'a> {
     worker: &'a Worker,
     state: &'a State,
@@ -427,11 +423,9 @@ struct Run<'a> {
     progress: Mutex<Pace>,
 }
 
-/// How far a run has come.
 struct Pace {
     bar: ProgressLine,
     begin: Instant,
-    /// The time at which the last picture was done.
     last: Instant,
     /// Work that is done, and all of it.
     done: f64,
@@ -469,7 +463,6 @@ fn lock<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 impl OneJob<'_> {
-    /// Returns the name that a picture has in the state.
     fn name(&self, number: usize) -> &str {
         let index = self.planned.wanted[&number];
         &self.planned.plan.pictures[index].1

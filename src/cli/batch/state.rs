@@ -160,7 +160,6 @@ impl Worker {
         }))
     }
 
-    /// Notes that a picture is done.
     pub(super) fn note(&self, entry: &StateRecord) -> Result<()> {
         let mut lines = self.lines.lock().unwrap_or_else(PoisonError::into_inner);
         let path = self.folder.join(format!("{}.jsonl", mark()));

@@ -61,7 +61,6 @@ pub(in super::super) fn abandon() {
     std::mem::forget(encoder); // who waits for it, waits for the end
 }
 
-/// Finds ffmpeg, or fails.
 pub(super) fn encoder(file: &Path) -> Result<PathBuf> {
     let name = format!("ffmpeg{}", std::env::consts::EXE_SUFFIX);
     let folders = std::env::var_os("PATH").unwrap_or_default();

@@ -8,13 +8,11 @@ use super::super::report::FrameRecord;
 
 /// A picture that was drawn, and what it took.
 pub(in super::super) struct RenderedPicture {
-    /// The line of the report.
     pub(in super::super) frame: FrameRecord,
     /// The frames that it is made of, if they are several.
     pub(in super::super) faces: Vec<FrameRecord>,
     /// The pixels; none where they go nowhere.
     pub(in super::super) picture: Option<Pixels>,
-    /// The channels beside its colours.
     pub(in super::super) channels: Vec<Channel>,
 }
 
@@ -33,7 +31,6 @@ impl Pixels {
     }
 }
 
-/// A frame whose picture is not written.
 impl From<FrameRecord> for RenderedPicture {
     fn from(frame: FrameRecord) -> Self {
         Self {

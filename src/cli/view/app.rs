@@ -268,7 +268,6 @@ impl App {
         }
     }
 
-    /// Moves the view while keys are held.
     fn fly(&mut self) {
         let direction = self.input.direction();
         let now = Instant::now();

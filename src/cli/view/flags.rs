@@ -1,5 +1,3 @@
-//! The flags that draw again what the viewer shows.
-
 use rara::clip::Expression;
 use rara::{Camera, ClipOp, Precision, Preset, Settings};
 

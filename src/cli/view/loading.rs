@@ -35,7 +35,6 @@ pub(super) struct LoadedWindow {
 /// How a scene is read.
 pub(super) type Load = Box<dyn FnOnce(Watch<'_>) -> Result<LoadedWindow, Failure> + Send>;
 
-/// How often a bar moves.
 pub(super) const TICK: Duration = Duration::from_millis(100);
 /// The time in which a bar that knows no share goes from end to end.
 const ROUND: f64 = 1.5;
@@ -45,7 +44,6 @@ pub(super) struct Loading {
     now: Arc<Mutex<Now>>,
 }
 
-/// How far it has come.
 #[derive(Debug, Clone, Default)]
 struct Now {
     what: String,

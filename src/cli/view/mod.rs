@@ -239,7 +239,6 @@ fn single(sections: Sections) -> Result<Sections, Failure> {
     }
 }
 
-/// Says what is wrong with `-o` before a window opens.
 fn shots(pattern: &Path) -> Result<Shots, Failure> {
     let text = pattern.to_str().filter(|text| text.contains("{}"));
     let text = text.ok_or_else(|| {

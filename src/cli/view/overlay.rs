@@ -18,10 +18,8 @@ const MESSAGE_TIME: Duration = Duration::from_secs(20);
 /// Pixels between panels, and between them and the window's edges, on an ordinary screen.
 const GAP: f64 = 8.0;
 
-/// What is to be written.
 #[derive(Debug, Clone)]
 pub(super) struct Overlay {
-    /// False where only what is asked for, or has failed, is written.
     talks: bool,
     keys: bool,
     numbers: bool,
@@ -34,7 +32,6 @@ pub(super) struct Overlay {
     shown: Option<Content>,
 }
 
-/// All that the panels depend on.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Content {
     size: (u32, u32),
@@ -61,7 +58,6 @@ pub(super) struct OverlayScene<'a> {
 }
 
 impl Overlay {
-    /// An overlay with numbers, a hint and what was done, or with nothing until a key asks for it.
     pub(super) fn new(text: bool) -> Self {
         Self {
             talks: text,
@@ -80,17 +76,14 @@ impl Overlay {
         (self.hint, self.hint_until) = (false, None);
     }
 
-    /// The same of the numbers.
     pub(super) fn set_numbers(&mut self, on: Option<bool>) {
         self.numbers = on.unwrap_or(!self.numbers);
     }
 
-    /// Shows what has failed, in place of an earlier message.
     pub(super) fn warn(&mut self, text: String) {
         self.message = Some((text, Instant::now() + MESSAGE_TIME, true));
     }
 
-    /// Shows what was done, likewise.
     pub(super) fn tell(&mut self, text: String) {
         if self.talks {
             self.message = Some((text, Instant::now() + MESSAGE_TIME, false));
@@ -102,7 +95,6 @@ impl Overlay {
         self.message.take().is_some()
     }
 
-    /// Notices that a scene is on the screen.
     pub(super) fn scene_is_seen(&mut self) {
         if self.hint {
             self.hint_until

@@ -33,7 +33,6 @@ impl Shots {
     }
 }
 
-/// The file of a picture's camera.
 fn beside(picture: &Path) -> PathBuf {
     picture.with_extension("json")
 }

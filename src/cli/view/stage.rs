@@ -33,14 +33,12 @@ pub(super) enum AppEvent {
     Read(Box<Result<LoadedWindow, Failure>>),
 }
 
-/// The open window.
 pub(super) struct Viewer {
     pub(super) windowed: Windowed,
     pub(super) window: Arc<Window>,
     pub(super) proxy: EventLoopProxy<AppEvent>,
     pub(super) manner: Manner,
     pub(super) scenery: Scenery,
-    /// True where there is a scene.
     pub(super) loaded: bool,
     /// True once there was one.
     pub(super) began: bool,
@@ -83,7 +81,6 @@ pub(super) struct Viewer {
 const SPEEDS: (f64, f64) = (1e-6, 1e6);
 
 impl Viewer {
-    /// A window without a scene.
     pub(super) fn new(
         windowed: Windowed,
         window: Arc<Window>,
@@ -137,13 +134,11 @@ impl Viewer {
         !self.occluded && width > 0 && height > 0
     }
 
-    /// Handles a new size of the window.
     pub(super) fn resized(&mut self, size: (u32, u32)) -> Result<(), Failure> {
         self.size = size;
         self.changed()
     }
 
-    /// Handles another size of an ordinary screen's pixels.
     pub(super) fn rescaled(&mut self, scale_factor: f64) {
         self.scale_factor = scale_factor;
         self.dirty = true;

@@ -130,7 +130,6 @@ pub(super) fn bar(text: &str, progress: ProgressBar, of: Type, room: (u32, u32))
     paper
 }
 
-/// An empty paper, no larger than there is room.
 fn paper((width, height): (u32, u32), room: (u32, u32)) -> Picture {
     let [r, g, b] = PAPER.map(|v| f32::from(v) / 255.0);
     Picture::filled(width.min(room.0), height.min(room.1), [r, g, b, 1.0])

@@ -155,7 +155,6 @@ impl Viewpoint {
         self.place(Pose { eye, ..self.pose });
     }
 
-    /// Goes back to the start.
     pub(super) fn reset(&mut self) {
         (self.pose, self.projection) = self.home;
     }

@@ -42,7 +42,6 @@ pub(crate) fn finite<S: serde::Serializer>(
     serializer.serialize_f64(psnr.min(999.0))
 }
 
-/// Judges pictures of one view of one cut scene by the truth.
 pub(crate) struct Judge<'a> {
     scene: &'a Scene<'a>,
     camera: &'a Camera,

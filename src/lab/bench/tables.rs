@@ -22,7 +22,6 @@ fn errors(m: &Measures) -> [Cell; 6] {
 }
 
 impl BenchReport {
-    /// The report as tables, that of the choices first.
     pub fn tables(&self) -> Vec<Table> {
         let mut tables = vec![choices(self), stages(self), ways(self)];
         if !self.shapes.is_empty() {

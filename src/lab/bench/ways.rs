@@ -43,7 +43,6 @@ pub(crate) fn lines(
     Ok(lines)
 }
 
-/// Lines of one size.
 fn with_ratios(camera: &Camera, measured: Vec<(&'static str, Measures)>) -> Vec<WayRow> {
     let exact = measured.iter().find(|(name, _)| *name == "exact");
     let exact = exact.map_or(f64::NAN, |(_, measures)| measures.l1);

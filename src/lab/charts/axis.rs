@@ -40,7 +40,6 @@ impl Axis {
         }
     }
 
-    /// The same axis from one value to another.
     pub fn between(self, low: f64, high: f64) -> Self {
         Self {
             range: Some([low, high]),
@@ -48,7 +47,6 @@ impl Axis {
         }
     }
 
-    /// True for a value that has a place on it.
     pub(super) fn takes(&self, value: f64) -> bool {
         value.abs() <= LARGEST && (self.scale == Scale::Linear || value >= 0.0)
     }

@@ -8,7 +8,6 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::colours::{INK, PAPER, series};
 
-/// A part of the paper.
 pub(super) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 /// Whether it was drawn; a string takes everything.
 pub(super) type DrawResult = Result<(), Box<dyn Error>>;

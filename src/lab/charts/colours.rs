@@ -21,7 +21,6 @@ const SERIES: [RGBColor; 7] = [
     RGBColor(0x00, 0x00, 0x00),
 ];
 
-/// The colour of a series, by its number.
 pub(super) fn series(number: usize) -> RGBColor {
     SERIES[number % SERIES.len()]
 }

@@ -30,7 +30,6 @@ impl Colours {
     }
 }
 
-/// Values of rows and columns as colours, each written into its cell.
 #[derive(Debug, Clone)]
 pub struct HeatMap {
     pub title: String,

@@ -22,7 +22,6 @@ pub use radar::Radar;
 pub use scatter::Scatter;
 pub use violins::Violins;
 
-/// Numbers under one name.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Values {
     pub name: String,
@@ -30,7 +29,6 @@ pub struct Values {
 }
 
 impl Values {
-    /// Numbers under a name.
     pub fn new(name: impl Into<String>, values: impl Into<Vec<f64>>) -> Self {
         Self {
             name: name.into(),
@@ -39,7 +37,6 @@ impl Values {
     }
 }
 
-/// A point of a chart.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Point {
     pub x: f64,
@@ -48,7 +45,6 @@ pub struct Point {
     pub label: String,
 }
 
-/// Points under one name.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {
     pub name: String,
@@ -56,13 +52,11 @@ pub struct Series {
 }
 
 impl Series {
-    /// Points without labels, [x, y] each.
     pub fn new(name: impl Into<String>, points: impl IntoIterator<Item = [f64; 2]>) -> Self {
         let points = points.into_iter().map(|[x, y]| (x, y, String::new()));
         Self::labelled(name, points)
     }
 
-    /// Points with labels, (x, y, label) each.
     pub fn labelled<L: Into<String>>(
         name: impl Into<String>,
         points: impl IntoIterator<Item = (f64, f64, L)>,

@@ -14,7 +14,6 @@ const LEFT: u32 = 76;
 /// The space for those of the axis across.
 const BELOW: u32 = 48;
 
-/// A rectangle with axes.
 pub(super) struct Plot<'a> {
     /// The rectangle; pixels are counted from its top left. What is drawn beyond it is moved to its edges.
     pub(super) area: Area<'a>,
@@ -98,19 +97,16 @@ impl<'a> Plot<'a> {
         Ok(plot)
     }
 
-    /// How far a value lies across.
     pub(super) fn across(&self, x: f64) -> i32 {
         let width = f64::from(self.area.dim_in_pixel().0);
         (self.x.share(x) * width).round() as i32
     }
 
-    /// How far a value lies down.
     pub(super) fn down(&self, y: f64) -> i32 {
         let height = f64::from(self.area.dim_in_pixel().1);
         ((1.0 - self.y.share(y)) * height).round() as i32
     }
 
-    /// The place of a point.
     pub(super) fn at(&self, x: f64, y: f64) -> (i32, i32) {
         (self.across(x), self.down(y))
     }
@@ -136,7 +132,6 @@ impl<'a> Plot<'a> {
         Ok(())
     }
 
-    /// A place in the rectangle, counted from the top left of what is around it.
     fn outside(&self, (x, y): (i32, i32)) -> (i32, i32) {
         (x + self.offset.0, y + self.offset.1)
     }
@@ -147,7 +142,6 @@ impl<'a> Plot<'a> {
         Ok(())
     }
 
-    /// A line between two places, which may be outside.
     pub(super) fn line(&self, from: (i32, i32), to: (i32, i32), colour: RGBColor) -> DrawResult {
         let path = vec![self.outside(from), self.outside(to)];
         self.outer.draw(&PathElement::new(path, colour))?;

@@ -1,5 +1,3 @@
-//! Values around a circle.
-
 use std::f64::consts::TAU;
 
 use plotters::prelude::*;

@@ -1,5 +1,3 @@
-//! Points with their names.
-
 use std::error::Error;
 
 use plotters::prelude::*;

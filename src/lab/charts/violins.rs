@@ -1,5 +1,3 @@
-//! Distributions as violins.
-
 use plotters::prelude::*;
 
 use super::canvas::{self, Anchor, Area, HEIGHT, SMALL, WIDTH};

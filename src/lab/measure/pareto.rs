@@ -1,5 +1,3 @@
-//! Finds the choices that no other choice beats.
-
 /// The indices, by rising cost, of the points `[cost, error]` that no other point beats. A point beats another if neither
 /// its cost nor its error is larger and one of them is smaller. Points that are not numbers are left out; equal points
 /// all stay.

@@ -1,5 +1,3 @@
-//! How much a picture jumps while a clip moves slowly.
-
 use super::same_size;
 use rara::{Picture, Result};
 

@@ -40,7 +40,6 @@ impl Region {
         }
     }
 
-    /// Share of the picture that is inside.
     pub fn share(&self) -> f64 {
         let inside = self.inside.iter().filter(|&&inside| inside).count();
         inside as f64 / self.inside.len() as f64

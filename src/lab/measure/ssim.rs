@@ -1,5 +1,3 @@
-//! Structural similarity of one channel.
-
 use rara::Picture;
 
 /// Half the window's width, pixels.
@@ -54,7 +52,6 @@ impl Window {
     }
 }
 
-/// The window about every position of an axis.
 fn windows(size: usize) -> Vec<Window> {
     let about = |centre: usize| {
         let start = centre.saturating_sub(RADIUS);
@@ -70,7 +67,6 @@ fn windows(size: usize) -> Vec<Window> {
     (0..size).map(about).collect()
 }
 
-/// The similarity of one window from its moments.
 fn similarity([a, b, aa, bb, ab]: [f64; 5]) -> f64 {
     let [c1, c2] = STABILISERS;
     let (variance_a, variance_b, covariance) = (aa - a * a, bb - b * b, ab - a * b);

@@ -10,7 +10,6 @@ use crate::frames::picture;
 use crate::measure;
 use crate::table::{Cell, Table};
 
-/// One way of cutting, compared with the picture of mode `none`.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct AblationRow {
     pub what: String,

@@ -65,7 +65,6 @@ impl Section<'_> {
     }
 }
 
-/// The scene's name and the cut's.
 fn case_name(source: &Source, case: &Case) -> String {
     format!("{}, {}", source.name, case.cut.name())
 }
@@ -164,7 +163,6 @@ pub fn run(
     report::write(folder, &results)
 }
 
-/// Loads a scene onto the device.
 fn loaded<'a>(headless: &mut Headless, source: &'a Source) -> Result<Scene<'a>> {
     let scene = source.scene();
     headless.load(&scene)?;

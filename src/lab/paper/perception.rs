@@ -11,7 +11,6 @@ use crate::study::Metric;
 
 /// How far from the middle of the cut's way the cut lies that removes a little more.
 const DEEPER: f64 = 0.1;
-/// One way of cutting in one case.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) struct PerceptionMeasures {
     pub way: String,

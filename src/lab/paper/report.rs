@@ -30,7 +30,6 @@ struct Section {
     id: &'static str,
     title: &'static str,
     text: Vec<String>,
-    /// What the page shows.
     body: String,
     tables: Vec<Table>,
 }
@@ -108,7 +107,6 @@ fn markdown(page: &Page) -> String {
     text
 }
 
-/// Tables with their titles and notes.
 fn html(tables: &[Table]) -> String {
     let one = |table: &Table| {
         let (title, note) = (escaped(&table.title), escaped(&table.note));
@@ -244,7 +242,6 @@ fn pictures(folder: &Path, maps: &Maps) -> Result<String> {
     Ok(text + "</div>\n")
 }
 
-/// A picture as the source of an `img`.
 fn embedded(folder: &Path, file: &str) -> Result<String> {
     let path = folder.join(file);
     let bytes = std::fs::read(&path).map_err(|e| {

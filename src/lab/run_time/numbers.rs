@@ -58,7 +58,6 @@ impl Measurements {
         }
     }
 
-    /// Measurements of the same scene in other pictures.
     pub(super) fn for_pictures(&self, size: [u32; 2], raster: &'static str) -> Self {
         Self {
             scene: self.scene.clone(),
@@ -69,7 +68,6 @@ impl Measurements {
         }
     }
 
-    /// Adds a number, unless nothing was measured.
     pub(super) fn add(&mut self, column: &str, row: &str, unit: &'static str, values: Vec<f64>) {
         if !values.is_empty() {
             self.all.push(Number {
@@ -81,7 +79,6 @@ impl Measurements {
         }
     }
 
-    /// Adds the stages of frames and their totals.
     pub(super) fn add_frames(&mut self, column: &str, frames: &[FrameTime]) {
         let stages = frames
             .last()

@@ -24,7 +24,6 @@ pub struct RunTimeOptions {
     pub gaussians: Vec<u32>,
     /// Widths of pictures; sections other than `passes` take the first.
     pub sizes: Vec<u32>,
-    /// Rounds at most.
     pub rounds: Option<u32>,
     pub device: HeadlessDesc,
 }
@@ -37,7 +36,6 @@ impl RunTimeOptions {
     }
 }
 
-/// The program that measures.
 pub trait Program {
     /// Hears what is done now.
     fn hear(&mut self, what: &str);
@@ -53,12 +51,10 @@ pub trait Program {
 pub(super) struct Run<'a> {
     pub(super) options: &'a RunTimeOptions,
     pub(super) program: &'a mut dyn Program,
-    /// The name of the device and its driver.
     pub(super) device: [String; 2],
     pub(super) all: Table,
     /// Names of ways of drawing whose pictures are wrong.
     pub(super) wrong: Vec<String>,
-    /// A folder for files that only this run needs.
     pub(super) folder: PathBuf,
 }
 

@@ -142,7 +142,6 @@ pub(super) fn on_plane(
     on_surface(random, camera, &place, shape, count, apart)
 }
 
-/// A random point of a surface, and its unit normal there.
 pub(super) type PlaceFn<'a> = &'a dyn Fn(&mut Random) -> (DVec3, DVec3);
 
 /// Up to `count` splats that a surface cuts.
@@ -206,7 +205,6 @@ pub(super) fn push(
     scene.push(position, scales.as_vec3(), rotation, opacity, &[0.0; 3]);
 }
 
-/// Gives the last splat of a scene without directions a random colour.
 pub(super) fn set_colour(scene: &mut Gaussians, random: &mut Random) {
     let at = scene.sh().len() - 3;
     for value in &mut scene.sh_mut()[at..] {

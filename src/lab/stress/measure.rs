@@ -58,7 +58,6 @@ pub struct RegimeRow {
     /// Most splats of a case that are visible, cut, invisible or culled here and not in the reference.
     pub miscounted: u32,
     pub forms: Vec<FormRow>,
-    /// The limit of the weight's error.
     pub target: f64,
     /// The limit of pictures, decibels.
     pub least_psnr: f64,
@@ -204,14 +203,12 @@ fn truth(case: &Case, clip: &Clip, settings: &Settings) -> rara_reference::Refer
     rara_reference::render::<f64>(&case.scene, &case.camera, clip, settings)
 }
 
-/// Waits for a thread and returns what it has computed.
 fn joined<T>(thread: ScopedJoinHandle<'_, T>) -> T {
     thread
         .join()
         .unwrap_or_else(|cause| panic::resume_unwind(cause))
 }
 
-/// Largest difference of a count.
 fn miscounted(ours: Counts, truth: Counts) -> u32 {
     [
         (ours.visible, truth.visible),

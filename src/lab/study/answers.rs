@@ -63,11 +63,9 @@ pub enum Side {
     Right,
 }
 
-/// One of the two that are compared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Which {
-    /// Hard cuts.
     Hard,
     Method,
 }

@@ -43,7 +43,6 @@ impl Participant {
         self.answers.len() >= self.asked
     }
 
-    /// The preferences in one respect.
     fn preferences(&self, metric: Metric) -> Vec<f64> {
         let asked = self.answers.iter().filter(|a| a.metric == metric);
         asked.map(Answer::preference).collect()
@@ -63,11 +62,9 @@ pub struct MetricResult {
 #[derive(Debug, Clone, Serialize)]
 pub struct Sample {
     pub values: Vec<f64>,
-    /// Their mean; `None` without any.
     pub mean: Option<f64>,
     /// Their standard deviation; `None` of fewer than two.
     pub deviation: Option<f64>,
-    /// Their median; `None` without any.
     pub median: Option<f64>,
     /// Cohen's d against 0; `None` of fewer than two, and where all are the same.
     pub d: Option<f64>,

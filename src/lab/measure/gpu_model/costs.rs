@@ -17,10 +17,8 @@ use rara_base::limits;
 
 use super::numbers::{FrameNumbers, WORD};
 
-/// The cost of one dispatch of a pass.
 #[derive(Debug, Clone, Copy)]
 pub struct Cost {
-    /// The name of its pipelines.
     pub name: &'static str,
     /// Its invocations, but for those that fill up the last workgroup.
     pub invocations: fn(&FrameNumbers) -> u64,
@@ -50,7 +48,6 @@ impl Cost {
         }
     }
 
-    /// The same with the turns of its loops.
     const fn turning(self, turns: fn(&FrameNumbers) -> f64) -> Self {
         Self { turns, ..self }
     }

@@ -48,7 +48,6 @@ pub fn camera(scene: &Gaussians) -> Result<Camera> {
     Camera::frame(&Bounds::of(scene), -DVec3::Y, 50.0, SIZE)
 }
 
-/// What cuts it.
 pub fn clip(is_cut: bool) -> Result<Clip> {
     Ok(match is_cut {
         true => Clip::of([Plane::new(DVec3::X, 0.0)?], ClipOp::And),
@@ -68,31 +67,18 @@ pub struct PipelineEstimate {
     pub cycles: u64,
 }
 
-/// The frames that were counted.
-///
-/// # Panics
-/// If the file is not as it is written.
 pub fn frames() -> Vec<ModelFrame> {
     parse(include_str!("frames.json"))
 }
 
-/// The pipelines of these frames.
-///
-/// # Panics
-/// If the file is not as it is written.
 pub fn pipelines() -> Vec<PipelineEstimate> {
     parse(include_str!("pipelines.json"))
 }
 
-/// Reads what [`text`] has written.
-///
-/// # Panics
-/// If it is something else.
 pub fn parse<T: DeserializeOwned>(text: &str) -> Vec<T> {
     serde_json::from_str(text).expect("what the test has written")
 }
 
-/// Frames or pipelines as their files have them.
 pub fn text(all: &[impl Serialize]) -> String {
     serde_json::to_string_pretty(all).expect("numbers and names") + "\n"
 }

@@ -1,5 +1,3 @@
-//! The numbers of a frame that the costs of its passes depend on.
-
 use rara_base::limits;
 use serde::{Deserialize, Serialize};
 
@@ -16,9 +14,7 @@ pub struct FrameNumbers {
     pub kept_blocks: u64,
     pub layers: u64,
     pub surfaces: u64,
-    /// Gaussians that are drawn.
     pub splats: u64,
-    /// Splats that are cut.
     pub cut: u64,
     /// Splats that a moved clip changes.
     pub changed: u64,
@@ -64,7 +60,6 @@ impl FrameNumbers {
         1 + (self.blocks.div_ceil(8 * u64::from(limits::BLOCK_SIZE)) + 2) * loads
     }
 
-    /// Partitions of the splats' sort.
     pub(super) fn partitions(&self) -> u64 {
         self.splats.div_ceil(limits::RADIX_PARTITION.into())
     }

@@ -52,7 +52,6 @@ fn frame(frame: &ModelFrame) -> Table {
     table
 }
 
-/// A row for each pass of each frame on each GPU.
 pub fn rows(frames: &[ModelFrame]) -> Table {
     let columns = ["gpu", "gaussians", "cut", "stage", "pass", "bound by", "ms"];
     let mut table = Table::new("", "", columns);

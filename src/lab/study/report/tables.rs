@@ -1,5 +1,3 @@
-//! The tables of a report.
-
 use crate::study::{Evaluation, Side, Which};
 use crate::table::{Cell, Table};
 

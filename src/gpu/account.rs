@@ -52,7 +52,6 @@ impl Account {
         }
     }
 
-    /// Counts a pipeline that was compiled.
     pub(super) fn count_pipeline(&self) {
         self.pipelines.fetch_add(1, Ordering::Relaxed);
     }

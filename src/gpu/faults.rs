@@ -33,7 +33,6 @@ struct State {
     instance: Option<ash::Instance>,
     pretence: Option<Pretence>,
     fault: Option<Fault>,
-    /// The calls that the fault is about.
     among: &'static [&'static str],
     /// Calls among them since the fault was set.
     calls: usize,

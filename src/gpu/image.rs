@@ -45,7 +45,6 @@ pub(super) const WHOLE: vk::ImageSubresourceRange = vk::ImageSubresourceRange {
 };
 
 impl Device {
-    /// Creates a colour target.
     #[doc(hidden)]
     pub fn create_image(&self, desc: &ImageDesc<'_>) -> Result<Image> {
         Image::new(self, desc)
@@ -130,22 +129,18 @@ impl Image {
         Ok(image)
     }
 
-    /// The Vulkan handle.
     pub fn handle(&self) -> vk::Image {
         self.handle
     }
 
-    /// The view of the whole image.
     pub fn view(&self) -> vk::ImageView {
         self.view
     }
 
-    /// Its size in pixels.
     pub fn extent(&self) -> vk::Extent2D {
         self.extent
     }
 
-    /// Its format.
     pub fn format(&self) -> vk::Format {
         self.format
     }

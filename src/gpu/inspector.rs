@@ -7,7 +7,6 @@ use ash::khr;
 /// A shader of a pipeline, as it was asked for and as the driver has compiled it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct CompiledShader {
-    /// The pipeline's name.
     pub name: &'static str,
     /// The shader's file in `glsl/`.
     pub file: String,
@@ -30,19 +29,15 @@ pub struct RecordedCommands {
     pub dispatches: Vec<DispatchNote>,
 }
 
-/// A dispatch.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct DispatchNote {
-    /// The pipeline's name.
     pub name: &'static str,
-    /// Its workgroups.
     pub groups: DispatchedGroups,
 }
 
 /// The workgroups of a dispatch.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum DispatchedGroups {
-    /// So many.
     Count(u32),
     /// As many as a command says.
     Indirect {
@@ -53,7 +48,6 @@ pub enum DispatchedGroups {
     },
 }
 
-/// The notes of a device.
 pub(super) struct Inspector {
     /// Where the driver tells what it has compiled.
     pub(super) executables: Option<khr::pipeline_executable_properties::Device>,

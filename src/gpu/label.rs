@@ -26,7 +26,6 @@ pub(super) fn begin_label(device: &Device, cmd: vk::CommandBuffer, name: &str) {
     unsafe { debug.cmd_begin_debug_utils_label(cmd, &label) };
 }
 
-/// Closes the label that [`begin_label`] opened.
 pub(super) fn end_label(device: &Device, cmd: vk::CommandBuffer) {
     if let Some(debug) = device.debug_utils() {
         // SAFETY: as in `begin_label`, which callers call first.

@@ -23,24 +23,29 @@ mod failure;
 pub mod faults;
 mod features;
 mod functions;
+#[allow(missing_docs)] // no application sees it, nor the next ones
 mod image;
 #[cfg(feature = "view")]
 mod in_flight;
 #[cfg(feature = "lab")]
 mod inspection;
 #[cfg(feature = "lab")]
+#[allow(missing_docs)]
 mod inspector;
 mod instance;
 mod label;
 mod layout;
 mod lent;
+#[allow(missing_docs)]
 mod memory;
 mod open;
+#[allow(missing_docs)]
 mod pipeline;
 mod pipeline_cache;
 mod pipeline_file;
 mod recorder;
 mod requirements;
+#[allow(missing_docs)]
 mod shader;
 mod shape;
 mod submission;

@@ -20,11 +20,9 @@ const DEDICATED_FROM: u64 = 16 << 20;
 /// The description from which a buffer is created.
 #[derive(Debug, Clone, Copy)]
 pub struct BufferDesc<'a> {
-    /// The name for debuggers, validation messages and errors.
     pub name: &'a str,
     /// Bytes; at least 16 are allocated and a multiple of 16.
     pub size: u64,
-    /// Who reaches it.
     pub location: Location,
 }
 
@@ -34,7 +32,6 @@ pub struct BufferDesc<'a> {
 #[derive(Clone)]
 pub struct Buffer(Arc<BufferInner>);
 
-/// A buffer and its memory.
 struct BufferInner {
     device: Device,
     handle: vk::Buffer,
@@ -47,7 +44,6 @@ struct BufferInner {
 }
 
 impl Device {
-    /// Creates a buffer.
     #[doc(hidden)]
     pub fn create_buffer(&self, desc: &BufferDesc<'_>) -> Result<Buffer> {
         Buffer::new(self, desc)
@@ -130,13 +126,11 @@ impl Buffer {
         Ok(Self(Arc::new(buffer)))
     }
 
-    /// The device it is on.
     #[doc(hidden)]
     pub fn device(&self) -> &Device {
         &self.0.device
     }
 
-    /// The Vulkan handle.
     pub fn handle(&self) -> vk::Buffer {
         self.0.handle
     }
@@ -151,12 +145,10 @@ impl Buffer {
         self.0.size
     }
 
-    /// Its name.
     pub fn name(&self) -> &str {
         &self.0.name
     }
 
-    /// Who reaches it.
     pub fn location(&self) -> Location {
         self.0.location
     }

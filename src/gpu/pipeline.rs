@@ -21,13 +21,10 @@ const MAIN: &CStr = c"main";
 /// The description from which a compute pipeline is created.
 #[derive(Debug, Clone, Copy)]
 pub struct ComputeDesc<'a> {
-    /// The name for debuggers, validation messages and errors.
     pub name: &'static str,
-    /// The shader.
     pub shader: &'a Shader,
     /// Specialisation constants: id and value.
     pub constants: &'a [(u32, u32)],
-    /// How the shader reaches its buffers.
     pub bindings: Bindings,
 }
 
@@ -36,7 +33,6 @@ pub struct ComputeDesc<'a> {
 pub struct ComputePipeline(Arc<Pipeline>);
 
 impl ComputePipeline {
-    /// Compiles the shader.
     pub fn new(device: &Device, desc: &ComputeDesc<'_>) -> Result<Self> {
         let layout = Layout::new(device, desc.name, &[desc.shader], desc.bindings)?;
         let constants = Constants::new(desc.constants);
@@ -70,7 +66,6 @@ impl ComputePipeline {
         Ok(Self(Arc::new(inner)))
     }
 
-    /// Its name.
     pub fn name(&self) -> &'static str {
         self.0.name
     }
@@ -107,15 +102,12 @@ fn subgroup(device: &Device) -> Option<u32> {
 /// write no depth. Their shaders only read buffers.
 #[derive(Debug, Clone, Copy)]
 pub struct GraphicsDesc<'a> {
-    /// The name for debuggers, validation messages and errors.
     pub name: &'static str,
     /// The vertex or mesh shader.
     pub front: &'a Shader,
-    /// The fragment shader.
     pub fragment: &'a Shader,
     /// Specialisation constants of both stages: id and value.
     pub constants: &'a [(u32, u32)],
-    /// The attachments that it draws into.
     pub attachments: Attachments,
     /// True when fragments behind the depth attachment, where there is one, are left out.
     pub depth_test: bool,
@@ -123,7 +115,6 @@ pub struct GraphicsDesc<'a> {
     pub blend: Option<vk::PipelineColorBlendAttachmentState>,
     /// The primitives that vertices make; unused with a mesh shader.
     pub topology: vk::PrimitiveTopology,
-    /// How the shaders reach their buffers.
     pub bindings: Bindings,
 }
 
@@ -135,7 +126,6 @@ pub struct GraphicsPipeline {
 }
 
 impl GraphicsPipeline {
-    /// Compiles the shaders.
     pub fn new(device: &Device, desc: &GraphicsDesc<'_>) -> Result<Self> {
         let mesh = desc.front.stage == vk::ShaderStageFlags::MESH_EXT;
         assert!(
@@ -246,12 +236,10 @@ impl GraphicsPipeline {
         })
     }
 
-    /// Its name.
     pub fn name(&self) -> &'static str {
         self.inner.name
     }
 
-    /// True when its front is a mesh shader.
     pub fn is_mesh(&self) -> bool {
         self.mesh
     }

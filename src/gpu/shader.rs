@@ -26,14 +26,11 @@ pub enum BufferAccess {
     ReadWrite,
 }
 
-/// A buffer that a shader declares.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct BufferUse {
-    /// Its name in the GLSL.
     pub name: &'static str,
     /// Its place in the pass's list of buffers: binding number, or index into the push constants' addresses.
     pub binding: u32,
-    /// How it is used.
     pub access: BufferAccess,
     /// True when all lanes read the same of it, so that it is bound also where others are reached by address.
     pub common: bool,
@@ -46,9 +43,7 @@ pub struct BufferUse {
 pub struct Shader {
     /// File name without its stage's ending: `classify` for `glsl/classify.comp`.
     pub name: &'static str,
-    /// The file.
     pub file: &'static str,
-    /// The stage.
     pub stage: vk::ShaderStageFlags,
     /// SPIR-V that reaches its buffers through the addresses in the push constants.
     pub address: &'static [u32],

@@ -123,7 +123,6 @@ impl Surface {
         )
     }
 
-    /// The format of the window's pictures.
     pub(super) fn format(&self, device: &Device) -> Result<vk::SurfaceFormatKHR> {
         // SAFETY: the surface is alive, and the device was opened for it.
         let offered = unsafe {

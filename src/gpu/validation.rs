@@ -10,7 +10,6 @@ use super::failure::failed;
 use super::requirements::offers;
 use rara_base::error::{Error, Result};
 
-/// The layer's name.
 pub(crate) const LAYER: &CStr = c"VK_LAYER_KHRONOS_validation";
 
 /// Synchronisation checks are off in the layer unless asked for.

@@ -44,7 +44,6 @@ impl Buffers {
         })
     }
 
-    /// The buffer of a declaration.
     pub(crate) fn get(&self, storage: &Storage) -> &Buffer {
         let at = |storage: &Storage| self.buffers[storage.place()].as_ref();
         let buffer = at(storage).or_else(|| at(&shared::MEMORY.empty));
@@ -62,7 +61,6 @@ impl Buffers {
         Spare(self.buffers.iter().zip(sizes.all()).map(spare).collect())
     }
 
-    /// The bytes of the buffers that are not spare.
     pub(crate) fn outgrown(&self, spare: &Spare) -> u64 {
         let pairs = self.buffers.iter().zip(spare.iter());
         let gone = pairs.filter(|(_, spare)| spare.is_none());
@@ -74,12 +72,10 @@ impl Buffers {
         self.sizes.hold(need)
     }
 
-    /// The sizes that they were allocated for.
     pub(crate) fn sizes(&self) -> &Sizes {
         &self.sizes
     }
 
-    /// All of them.
     pub(crate) fn all(&self) -> impl Iterator<Item = &Buffer> {
         self.buffers.iter().flatten()
     }

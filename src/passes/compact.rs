@@ -15,7 +15,6 @@ memory! {
     block_offsets: |plan| 8 * plan.blocks();
     /// The Gaussians that are drawn, and their places among those that are cut.
     splat_gaussians: |plan| 8 * plan.gaussians();
-    /// The Gaussians that are cut.
     cutoffs: |plan| 4 * plan.gaussians();
 }
 

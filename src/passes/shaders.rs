@@ -13,7 +13,6 @@ pub(crate) type ConstantList = SmallVec<[(u32, u32); 14]>;
 
 /// The declarations of a program's shaders to the host.
 pub(crate) trait Interface {
-    /// Its name, that of its files.
     const NAME: &'static str;
     /// Its buffers, by name.
     type Buffers<B: Copy>: BufferSet<B, Program = Self>;
@@ -25,7 +24,6 @@ pub(crate) trait Interface {
 
 /// A program of one compute shader.
 pub(crate) trait Compute: Interface {
-    /// The shader.
     const SHADER: &'static Shader;
 }
 

@@ -59,7 +59,6 @@ impl Sizes {
         self.reserved || self.scene == other.scene
     }
 
-    /// The bytes of a buffer.
     pub(super) fn bytes(&self, storage: &Storage) -> u64 {
         self.bytes[storage.place()]
     }
@@ -72,7 +71,6 @@ impl Sizes {
             .zip(self.bytes.iter().copied())
     }
 
-    /// The largest buffer, bytes.
     pub(crate) fn largest(&self) -> u64 {
         self.bytes.iter().copied().max().unwrap_or(0)
     }

@@ -39,7 +39,6 @@ impl Storage {
         Self { location, ..self }
     }
 
-    /// A buffer of the scene.
     pub(super) const fn of_scene(name: &'static str, buffer: fn(&SceneBuffers) -> &Buffer) -> Self {
         let of_scene = Some(buffer);
         Self {
@@ -48,7 +47,6 @@ impl Storage {
         }
     }
 
-    /// Its place in a frame's memory.
     pub(super) fn place(&self) -> usize {
         self.place.load(Ordering::Relaxed)
     }

@@ -5,7 +5,6 @@ use crate::passes::scene_buffers::SceneBuffers;
 use rara_gpu::Buffer;
 
 impl Buffers {
-    /// The buffer of a debug name.
     pub(crate) fn named(&self, name: &str) -> Option<&Buffer> {
         let mut all = self.sizes().all();
         let (storage, _) = all.find(|(storage, _)| storage.name == name)?;
@@ -14,7 +13,6 @@ impl Buffers {
 }
 
 impl SceneBuffers {
-    /// The buffer of a debug name.
     pub(crate) fn named(&self, name: &str) -> Option<&Buffer> {
         let all = [&self.gaussians, &self.sh, &self.blocks];
         all.into_iter().find(|buffer| buffer.name() == name)

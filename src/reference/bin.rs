@@ -26,7 +26,6 @@ pub struct Outline<T> {
 /// The tiles of one row that a splat reaches.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Span {
-    /// The row of tiles.
     pub row: u32,
     /// First and last (exclusive) column of tiles.
     pub columns: [u32; 2],

@@ -22,7 +22,6 @@ pub struct Chord<T> {
     pub front: Option<HalfSpace<T>>,
     /// The half-spaces that the surfaces keep of the splat that they cut.
     pub half_spaces: Vec<HalfSpace<T>>,
-    /// How they combine.
     pub op: ClipOp,
     /// Radius of the traced ellipsoid, standard deviations.
     pub sigma: T,

@@ -20,7 +20,6 @@ pub enum SplatCut<T> {
     Affine {
         /// The half-spaces that are kept of the splat.
         planes: Vec<AffinePlane<T>>,
-        /// How they combine.
         op: ClipOp,
     },
     /// The exact share along each pixel's true ray.

@@ -132,7 +132,6 @@ pub struct Beam<T> {
     pub lean: Vec3<T>,
     /// The half-spaces that the surfaces keep of the splat that they cut.
     pub half_spaces: Vec<HalfSpace<T>>,
-    /// How they combine.
     pub op: ClipOp,
     /// The half-space in front of the eye, if the eye is within the splat.
     pub front: Option<HalfSpace<T>>,

@@ -29,7 +29,6 @@ pub struct Footprint<T> {
     pub view_centre: Vec3<T>,
     /// Units of the scene in one of the layer's.
     pub unit: T,
-    /// How points become pixels.
     pub projection: Projection,
     /// Image derivatives b1, b2 of the footprint, evaluated at the clamped direction, pixels.
     pub gradients: [Vec3<T>; 2],

@@ -20,11 +20,9 @@ pub struct LayerView<'a, T> {
     pub clip: Clip,
     /// The numbers of its Gaussians in the scene.
     pub numbers: Numbers<'a>,
-    /// True when it is drawn.
     pub visible: bool,
 }
 
-/// The layers of a scene.
 pub fn layers<'a, T: Real>(
     scene: &Scene<'a>,
     camera: &Camera,

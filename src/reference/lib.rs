@@ -4,6 +4,7 @@
 //! floats to a few units in the last place. Nothing in here knows about Vulkan.
 
 #![forbid(unsafe_code)]
+#![allow(missing_docs)] // it is no API
 
 pub mod bin;
 pub mod chord;
@@ -42,12 +43,10 @@ use rara_scene::clip::Clip;
 use rara_scene::picture::Picture;
 use rara_scene::settings::Settings;
 
-/// A rendered frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReferenceFrame {
     /// The picture, rounded to f32 at the very end.
     pub picture: Picture,
-    /// How many Gaussians ended where.
     pub counts: Counts,
 }
 
@@ -70,7 +69,6 @@ pub fn render<'a, T: Real>(
     }
 }
 
-/// The sides of a layer's Gaussians.
 fn sides<T: Real>(layer: &LayerView<'_, T>, settings: &Settings) -> Vec<Side> {
     match layer.visible {
         true => classify::classify(&layer.gaussians, &layer.view, &layer.clip, settings),
@@ -107,7 +105,6 @@ fn in_order<T: Real>(
     splats
 }
 
-/// How many Gaussians are on which side.
 pub fn counts(sides: &[Side]) -> Counts {
     let mut counts = Counts::default();
     for side in sides {

@@ -41,7 +41,6 @@ pub struct Direction<T> {
 }
 
 impl<T: Real> Direction<T> {
-    /// The square of its length.
     pub fn squared(&self) -> T {
         self.dot(self)
     }
@@ -75,7 +74,6 @@ impl<T: Real> std::ops::Sub for Direction<T> {
 }
 
 impl<T: Real> Threshold<T> {
-    /// The other side of the plane.
     pub fn complement(self) -> Self {
         Self {
             z: -self.z,

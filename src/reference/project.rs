@@ -13,9 +13,7 @@ use rara_scene::settings::Settings;
 pub struct Splat<T> {
     /// Its number in the scene, where the layers' Gaussians stand one after the other.
     pub index: u32,
-    /// Its layer's number.
     pub layer: u32,
-    /// Its position, size and opacity.
     pub footprint: Footprint<T>,
     /// Red, green and blue, not negative.
     pub colour: [T; 3],

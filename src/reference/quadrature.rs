@@ -37,13 +37,10 @@ const NODES: usize = 32;
 /// A pixel's rays, and the clip that they are cut by.
 #[derive(Debug, Clone, Copy)]
 pub struct PixelRays<'a> {
-    /// The camera whose pixel it is.
     pub camera: &'a Camera,
-    /// The clip.
     pub clip: &'a Clip,
     /// The pixel's position from the picture's corner, pixels.
     pub position: DVec2,
-    /// The rays that its low-pass gathers.
     pub bundle: Bundle,
     /// The number of rays along each side of their grid.
     pub steps: u32,
@@ -109,7 +106,6 @@ impl<'a> PixelRays<'a> {
     }
 }
 
-/// One Gaussian and one pixel.
 struct Pixel {
     /// Centre of the Gaussian, world units.
     centre: DVec3,

@@ -40,18 +40,13 @@ impl Real for f32 {
     }
 }
 
-/// Three numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Vec3<T> {
-    /// First component.
     pub x: T,
-    /// Second component.
     pub y: T,
-    /// Third component.
     pub z: T,
 }
 
-/// A vector from its components.
 pub fn vec3<T>(x: T, y: T, z: T) -> Vec3<T> {
     Vec3 { x, y, z }
 }
@@ -62,17 +57,14 @@ impl<T: Real> Vec3<T> {
         vec3(T::of(v.x), T::of(v.y), T::of(v.z))
     }
 
-    /// The zero vector.
     pub fn zero() -> Self {
         vec3(T::zero(), T::zero(), T::zero())
     }
 
-    /// Inner product.
     pub fn dot(self, other: Self) -> T {
         self.x * other.x + self.y * other.y + self.z * other.z
     }
 
-    /// Vector product.
     pub fn cross(self, other: Self) -> Self {
         vec3(
             self.y * other.z - self.z * other.y,
@@ -81,12 +73,10 @@ impl<T: Real> Vec3<T> {
         )
     }
 
-    /// Inner product with itself.
     pub fn squared(self) -> T {
         self.dot(self)
     }
 
-    /// Length.
     pub fn length(self) -> T {
         self.squared().sqrt()
     }

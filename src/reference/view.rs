@@ -10,7 +10,6 @@ use rara_scene::placement::Placement;
 pub struct ViewTransform<T> {
     /// Picture width and height, pixels.
     pub size: [u32; 2],
-    /// How points become pixels.
     pub projection: Projection,
     /// Focal lengths along x and y, pixels; of an orthographic camera the pixels of a unit of the scene.
     pub focal: [T; 2],

@@ -200,7 +200,6 @@ impl Renderer {
         Some(depth.map.in_scene(&self.placement))
     }
 
-    /// The attachments of the next frame.
     pub(super) fn targets(&self) -> Targets {
         Targets {
             colour: self.desc.attachments(),
@@ -304,7 +303,6 @@ impl Renderer {
     }
 }
 
-/// Tiles of a picture.
 pub(super) fn tiles_of(width: u32, height: u32) -> u32 {
     let columns = width.div_ceil(limits::TILE_WIDTH);
     columns.saturating_mul(height.div_ceil(limits::TILE_HEIGHT))

@@ -135,7 +135,6 @@ impl FramesInFlight {
         frame.map_or((false, 0), RecordedFrame::need)
     }
 
-    /// The slots, in no order.
     pub(super) fn slots(&self) -> &[RecordedFrame] {
         &self.slots
     }

@@ -60,7 +60,6 @@ impl Headless {
         })
     }
 
-    /// Makes it on a device that is open.
     fn on(device: Device, desc: &HeadlessDesc) -> Result<Self> {
         let format = blendable_on(&device, TargetFormat::default())?;
         let renderer = RendererDesc {

@@ -56,7 +56,6 @@ struct Session {
 }
 
 impl Session {
-    /// Makes it on a device that is open.
     fn new(device: Device, desc: &HeadlessDesc, renderer: RendererDesc) -> Result<Self> {
         let pipelines = PipelineFile::open(&desc.pipeline_cache, &device);
         if let Some(hook) = &desc.on_compile {

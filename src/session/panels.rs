@@ -25,7 +25,6 @@ struct PanelTexture {
     bytes: Vec<u8>,
 }
 
-/// The panels of the next frames, and their way there.
 #[derive(Default)]
 pub(super) struct Panels {
     stored: Vec<PanelTexture>,

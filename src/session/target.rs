@@ -122,7 +122,6 @@ impl Target {
         self.held = None;
     }
 
-    /// Reads the picture back.
     #[cfg(any(feature = "view", test))]
     pub(super) fn read_back(&mut self, device: &Device) -> Result<rara_scene::picture::Picture> {
         self.stored(device, |stored| stored.decode())
@@ -173,7 +172,6 @@ impl Target {
         Ok(result)
     }
 
-    /// The bytes of a picture.
     fn bytes(&self, extent: vk::Extent2D) -> u64 {
         u64::from(extent.width) * u64::from(extent.height) * self.format.pixel_bytes()
     }

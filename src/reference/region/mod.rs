@@ -39,7 +39,6 @@ pub enum Side {
     Culled,
     /// In view and untouched.
     Visible,
-    /// In view and cut.
     Cutoff,
     /// In view but wholly clipped away.
     Invisible,

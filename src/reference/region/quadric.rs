@@ -7,7 +7,6 @@ use super::{Ellipsoid, HalfSpace, Side};
 use crate::real::{Real, Vec3, vec3};
 use rara_scene::clip::Quadric;
 
-/// A symmetric matrix.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Symmetric<T> {
     /// xx, yy, zz.
@@ -17,7 +16,6 @@ pub struct Symmetric<T> {
 }
 
 impl<T: Real> Symmetric<T> {
-    /// The matrix of zeros.
     pub fn zero() -> Self {
         Self {
             diagonal: Vec3::zero(),
@@ -25,7 +23,6 @@ impl<T: Real> Symmetric<T> {
         }
     }
 
-    /// The product with a vector.
     pub fn times(&self, v: Vec3<T>) -> Vec3<T> {
         let (d, a) = (self.diagonal, self.across);
         vec3(
@@ -40,7 +37,6 @@ impl<T: Real> Symmetric<T> {
         v.dot(self.times(v))
     }
 
-    /// The sum of the diagonal.
     pub fn trace(&self) -> T {
         self.diagonal.x + self.diagonal.y + self.diagonal.z
     }
@@ -50,7 +46,6 @@ impl<T: Real> Symmetric<T> {
         (self.diagonal.squared() + T::of(2.0) * self.across.squared()).sqrt()
     }
 
-    /// All elements times a factor.
     fn scaled(&self, factor: T) -> Self {
         Self {
             diagonal: self.diagonal * factor,
@@ -125,7 +120,6 @@ impl<T: Real> UnitSurface<T> {
         self.half_space.normal + self.bend.times(point) * T::of(2.0)
     }
 
-    /// True for a plane.
     pub(crate) fn is_flat(&self) -> bool {
         self.bend == Symmetric::zero()
     }

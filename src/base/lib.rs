@@ -11,6 +11,7 @@ pub mod fnv;
 #[cfg(feature = "json")]
 pub mod json;
 pub mod limits;
+pub mod parallel;
 mod setters;
 pub mod stats;
 

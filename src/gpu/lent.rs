@@ -104,6 +104,17 @@ impl Memory {
         matches!(self, Self::Own(allocation) if allocation.is_dedicated())
     }
 
+    /// True when the device sees what the host writes without more ado.
+    pub(super) fn is_coherent(&self) -> bool {
+        match self {
+            Self::Own(allocation) => {
+                let properties = allocation.memory_properties();
+                properties.contains(vk::MemoryPropertyFlags::HOST_COHERENT)
+            }
+            Self::Lent { lent, .. } => !lent.mapped.is_null(),
+        }
+    }
+
     pub(super) fn mapped(&self) -> Option<&[u8]> {
         match self {
             Self::Own(allocation) => allocation.mapped_slice(),

@@ -191,6 +191,17 @@ impl Buffer {
         mapped.first(size)
     }
 
+    /// The bytes of memory of the [device's own](Location::GpuOnly) that the host may write all the same, as where both share
+    /// it; `None` where it cannot, and they have to be copied. Nothing has used the buffer yet.
+    #[doc(hidden)]
+    pub fn shared_mut(&mut self) -> Option<WriteOnly<'_>> {
+        let size = self.0.size as usize;
+        let allocation = Arc::get_mut(&mut self.0)?.allocation.as_mut()?;
+        let is_coherent = allocation.is_coherent();
+        let mapped = allocation.mapped_mut().filter(|_| is_coherent)?;
+        Some(mapped.first(size))
+    }
+
     /// Panics with a sentence unless `size` bytes at `offset` lie inside.
     pub(crate) fn check_range(&self, offset: u64, size: u64) {
         let inside = offset

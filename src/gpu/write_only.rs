@@ -60,6 +60,22 @@ impl WriteOnly<'_> {
         };
     }
 
+    /// The bytes in pieces of a size, of which the last may be smaller.
+    #[doc(hidden)]
+    pub fn chunks(self, size: usize) -> impl Iterator<Item = Self> {
+        let mut rest = self.bytes;
+        std::iter::from_fn(move || {
+            let taken = rest.len().min(size);
+            let first = rest.cast::<u8>();
+            // SAFETY: inside of what can be written, as there are at least so many bytes.
+            let after = unsafe { first.add(taken) };
+            rest = NonNull::slice_from_raw_parts(after, rest.len() - taken);
+            let chunk = NonNull::slice_from_raw_parts(first, taken);
+            // SAFETY: no two pieces share a byte, and this is gone.
+            (taken > 0).then(|| unsafe { Self::new(chunk) })
+        })
+    }
+
     /// The first bytes of these.
     ///
     /// # Panics
@@ -106,6 +122,17 @@ mod tests {
         // SAFETY: all of them have been written.
         let read = memory.map(|byte| unsafe { byte.assume_init() });
         assert_eq!(read, [1, 2, 3, 5, 6, 7]);
+    }
+
+    #[test]
+    fn chunks_hold_every_byte_once() {
+        let mut bytes = [0; 8];
+        let chunks = WriteOnly::from(&mut bytes[..]).chunks(3);
+        for (number, mut chunk) in (1..).zip(chunks) {
+            let size = chunk.size();
+            chunk.write(0, &[number; 3][..size]);
+        }
+        assert_eq!(bytes, [1, 1, 1, 2, 2, 2, 3, 3]);
     }
 
     #[test]

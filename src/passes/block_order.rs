@@ -2,10 +2,13 @@
 //! bounds of those blocks. Large Gaussians and those too faint to be sure of a pixel have blocks of their own: a single
 //! one would widen, or leave undecided, the block of its neighbours.
 
+use std::thread;
+
 use glam::Vec3;
 
 use crate::types::Block;
 use rara_base::limits;
+use rara_base::parallel::{in_parallel, threads};
 use rara_scene::Gaussians;
 
 /// Bits of the places that a curve distinguishes along each axis: those of three axes and the kind are a key of 32.
@@ -21,6 +24,8 @@ const LARGE_REACH: f32 = 1.0 / 16.0;
 /// Gaussians that the scene's extent is estimated from, and the share of their centres beyond each end.
 const SAMPLES: usize = 1 << 14;
 const OUTLIERS: usize = 100;
+/// Gaussians that a thread takes at a time; whole blocks.
+const CHUNK: usize = 64 * limits::BLOCK_SIZE as usize;
 
 /// The numbers of the Gaussians in the order of the device.
 pub(super) fn order(scene: &Gaussians) -> Vec<u32> {
@@ -48,17 +53,37 @@ pub(super) fn order(scene: &Gaussians) -> Vec<u32> {
         let cell = share * ((1 << BITS) - 1) as f32;
         class << (3 * BITS) | morton(cell.x as u32, cell.y as u32, cell.z as u32)
     };
-    let mut keys: Vec<u64> = (0..count)
-        .map(|number| u64::from(key(number)) << 32 | u64::from(number))
-        .collect();
-    keys.sort_unstable();
+    let mut keys = vec![0; scene.len()];
+    let parts = (0..).step_by(CHUNK).zip(keys.chunks_mut(CHUNK));
+    in_parallel(parts, |(first, keys)| {
+        for (number, to) in (first..).zip(keys) {
+            *to = u64::from(key(number)) << 32 | u64::from(number);
+        }
+    });
+    sort(&mut keys, threads());
     keys.into_iter().map(|key| key as u32).collect()
+}
+
+/// Sorts on so many threads. No two keys are equal, so that their number changes nothing.
+fn sort(keys: &mut [u64], threads: usize) {
+    if threads < 2 || keys.len() < CHUNK {
+        return keys.sort_unstable();
+    }
+    let (low, _, high) = keys.select_nth_unstable(keys.len() / 2);
+    thread::scope(|scope| {
+        scope.spawn(|| sort(low, threads / 2));
+        sort(high, threads - threads / 2);
+    });
 }
 
 /// The blocks of an order.
 pub(super) fn blocks(scene: &Gaussians, order: &[u32]) -> Vec<Block> {
-    let chunks = order.chunks(limits::BLOCK_SIZE as usize);
-    chunks.map(|numbers| block(scene, numbers)).collect()
+    let blocks = in_parallel(order.chunks(CHUNK), |numbers| {
+        let blocks = numbers.chunks(limits::BLOCK_SIZE as usize);
+        blocks.map(|numbers| block(scene, numbers)).collect()
+    });
+    let blocks: Vec<Vec<Block>> = blocks;
+    blocks.concat()
 }
 
 fn block(scene: &Gaussians, numbers: &[u32]) -> Block {

@@ -14,6 +14,7 @@ use crate::types::Gaussian;
 use rara_base::counted::counted;
 use rara_base::error::{Error, Result};
 use rara_base::limits;
+use rara_base::parallel::in_parallel;
 use rara_gpu::{Buffer, BufferDesc, Device, Location, Recorder, WriteOnly};
 use rara_scene::camera::Camera;
 use rara_scene::clip::Clip;
@@ -44,7 +45,7 @@ static NEXT_ID: AtomicU64 = AtomicU64::new(0);
 
 /// Gaussians converted at a time while uploading, so that the scene is never in memory a third time.
 const UPLOAD_CHUNK: usize = 1 << 16;
-/// The same while writing into a host's memory, where a chunk is no submission: few enough to stay in the processor's cache.
+/// Gaussians that a thread writes at a time: few enough to stay in the processor's cache.
 const WRITE_CHUNK: usize = 1 << 10;
 
 impl SceneBuffers {
@@ -56,19 +57,16 @@ impl SceneBuffers {
         format: ShFormat,
     ) -> Result<Self> {
         let scene = scene.into();
-        let (buffers, packed) = Self::allocate(device, &scene, format)?;
+        let (mut buffers, packed) = Self::allocate(device, &scene, format)?;
         for layer in &packed {
             let [gaussians, sh, blocks] = layer.offsets();
-            upload_in_chunks(
-                device,
-                &buffers.gaussians,
-                gaussians,
-                &layer.order,
-                |i, out| {
-                    out.push(layer.gaussian(i));
-                },
-            )?;
-            upload_in_chunks(device, &buffers.sh, sh, &layer.order, |i, out| {
+            let [gaussian_bytes, sh_bytes] = layer.bytes_each();
+            let (order, target) = (&layer.order[..], (&mut buffers.gaussians, gaussians));
+            upload_in_order(device, target, (order, gaussian_bytes), |i, out| {
+                out.push(layer.gaussian(i));
+            })?;
+            let target = (&mut buffers.sh, sh);
+            upload_in_order(device, target, (order, sh_bytes), |i, out| {
                 layer.append_sh(i, out);
             })?;
             device.upload(&buffers.blocks, blocks, cast_slice(&layer.blocks))?;
@@ -176,12 +174,12 @@ impl SceneBuffers {
         for layer in &packed {
             // The places between the layers hold no Gaussian, and nothing reads them.
             let [first, second, third] = layer.offsets().map(|offset| offset as usize);
-            write_in_chunks(&mut bytes, first, &layer.order, |i, out| {
-                out.push(layer.gaussian(i));
-            });
-            write_in_chunks(&mut bytes, gaussians + second, &layer.order, |i, out| {
-                layer.append_sh(i, out);
-            });
+            let [gaussian_bytes, sh_bytes] =
+                layer.bytes_each().map(|each| each * layer.order.len());
+            let target = bytes.part(first..first + gaussian_bytes);
+            write_in_order(target, &layer.order, |i, out| out.push(layer.gaussian(i)));
+            let target = bytes.part(gaussians + second..gaussians + second + sh_bytes);
+            write_in_order(target, &layer.order, |i, out| layer.append_sh(i, out));
             bytes.write(gaussians + sh + third, cast_slice(&layer.blocks));
         }
         // SAFETY: the caller vouches for `cmd`, and keeps the buffers alive until it has executed.
@@ -327,41 +325,45 @@ fn gpu_only(device: &Device, name: &str, size: u64) -> Result<Buffer> {
     })
 }
 
-/// Writes what `append` makes of each Gaussian, in an order, from an offset on.
-fn write_in_chunks<T: bytemuck::NoUninit>(
-    target: &mut WriteOnly<'_>,
-    mut offset: usize,
+/// Writes what `append` makes of each Gaussian, in an order, on all cores; of each it makes as many bytes.
+fn write_in_order<T: bytemuck::NoUninit>(
+    target: WriteOnly<'_>,
     order: &[u32],
-    mut append: impl FnMut(u32, &mut Vec<T>),
+    append: impl Fn(u32, &mut Vec<T>) + Sync,
 ) {
-    let mut packed = Vec::new();
-    for chunk in order.chunks(WRITE_CHUNK) {
-        packed.clear();
-        for &index in chunk {
-            append(index, &mut packed);
-        }
-        let bytes: &[u8] = cast_slice(&packed);
-        target.write(offset, bytes);
-        offset += bytes.len();
-    }
+    let each = target.size() / order.len().max(1);
+    let targets = target.chunks((WRITE_CHUNK * each).max(1));
+    in_parallel(
+        order.chunks(WRITE_CHUNK).zip(targets),
+        |(numbers, mut target)| {
+            let mut packed = Vec::with_capacity(target.size() / size_of::<T>());
+            for &index in numbers {
+                append(index, &mut packed);
+            }
+            target.write(0, cast_slice(&packed));
+        },
+    );
 }
 
-/// Uploads what `append` makes of each Gaussian, in an order, to a buffer from an offset on.
-fn upload_in_chunks<T: bytemuck::NoUninit>(
+/// Uploads what `append` makes of each Gaussian, so many bytes of each, in an order, to a buffer from an offset on.
+fn upload_in_order<T: bytemuck::NoUninit>(
     device: &Device,
-    buffer: &Buffer,
-    mut offset: u64,
-    order: &[u32],
-    mut append: impl FnMut(u32, &mut Vec<T>),
+    (buffer, mut offset): (&mut Buffer, u64),
+    (order, each): (&[u32], usize),
+    append: impl Fn(u32, &mut Vec<T>) + Sync,
 ) -> Result<()> {
+    if let Some(mut shared) = buffer.shared_mut() {
+        let begin = offset as usize;
+        let target = shared.part(begin..begin + order.len() * each);
+        write_in_order(target, order, append);
+        return Ok(());
+    }
     let mut packed = Vec::new();
     for chunk in order.chunks(UPLOAD_CHUNK) {
-        packed.clear();
-        for &index in chunk {
-            append(index, &mut packed);
-        }
-        device.upload(buffer, offset, cast_slice(&packed))?;
-        offset += size_of_val(packed.as_slice()) as u64;
+        packed.resize(chunk.len() * each, 0);
+        write_in_order(packed.as_mut_slice().into(), chunk, &append);
+        device.upload(buffer, offset, &packed)?;
+        offset += packed.len() as u64;
     }
     Ok(())
 }

@@ -199,15 +199,18 @@ impl<'a> PackedLayer<'a> {
         }
     }
 
+    /// Bytes of a Gaussian, and of its spherical harmonics.
+    pub(super) fn bytes_each(&self) -> [usize; 2] {
+        let words = sh_storage::words(self.sh.0, self.sh.1);
+        [size_of::<Gaussian>(), words * size_of::<u32>()]
+    }
+
     /// The offsets of its Gaussians, their spherical harmonics and its blocks, bytes.
     pub(super) fn offsets(&self) -> [u64; 3] {
         let first = u64::from(self.first_block) * u64::from(limits::BLOCK_SIZE);
-        let words = sh_storage::words(self.sh.0, self.sh.1);
-        [
-            first * size_of::<Gaussian>() as u64,
-            first * (words * size_of::<u32>()) as u64,
-            u64::from(self.first_block) * size_of::<Block>() as u64,
-        ]
+        let [gaussian, sh] = self.bytes_each().map(|bytes| first * bytes as u64);
+        let blocks = u64::from(self.first_block) * size_of::<Block>() as u64;
+        [gaussian, sh, blocks]
     }
 
     /// The Gaussians' numbers in the scene, in the order of the device.

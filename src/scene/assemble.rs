@@ -1,10 +1,15 @@
 //! From a row of raw numbers to a Gaussian: units converted, unusable rows dropped, both counted.
 
+use std::ops::Range;
+
+use bytemuck::allocation::try_zeroed_vec;
 use glam::{DVec4, Quat, Vec3};
 
 use super::failure::Failure;
-use super::{Format, Gaussians, LoadReport, Property, SceneFile, sh_coefficients};
+use super::parts::keep;
+use super::{Format, GaussianArrays, Gaussians, LoadReport, Property, SceneFile, sh_coefficients};
 use rara_base::counted::counted;
+use rara_base::parallel::in_parallel;
 
 /// Slots of a row, see [`FIXED`]: the scales, by default their logarithms.
 pub(super) const SCALES: usize = 3;
@@ -37,18 +42,36 @@ pub(super) enum ColumnForm {
     Plain,
 }
 
+/// Rows that one thread makes Gaussians of at a time: few enough to stay in its cache.
+pub(super) const ROWS: usize = 1 << 10;
+
 /// Collects rows into [`Gaussians`].
 pub(super) struct Assembler {
-    gaussians: Gaussians,
+    /// With a place for each row.
+    arrays: GaussianArrays,
     /// The properties that were asked for, whose slots follow on those of a Gaussian.
     properties: Vec<Property>,
     pub(super) report: LoadReport,
     /// The numbers of the rows that were dropped, which ascend.
     pub(super) dropped: Vec<u64>,
-    /// Rows so far, dropped ones included.
-    pub(super) rows: u64,
-    /// Slots in use.
-    used: usize,
+    stored: ColumnForm,
+}
+
+/// Rows that follow each other, and the places of the Gaussians that they become.
+pub(super) struct Rows<'a> {
+    /// The number of the first.
+    first: u64,
+    /// How many have been pushed.
+    pushed: usize,
+    positions: &'a mut [Vec3],
+    scales: &'a mut [Vec3],
+    rotations: &'a mut [Quat],
+    opacities: &'a mut [f32],
+    sh: &'a mut [f32],
+    sh_degree: u32,
+    properties: Vec<(&'a mut [f64], bool)>,
+    report: LoadReport,
+    dropped: Vec<u64>,
     stored: ColumnForm,
 }
 
@@ -62,15 +85,13 @@ impl Assembler {
     ) -> Option<Self> {
         let room = usize::try_from(count).ok()?;
         for property in &mut properties {
-            property.values.try_reserve_exact(room).ok()?;
+            property.values = try_zeroed_vec(room).ok()?;
         }
         Some(Self {
-            gaussians: Gaussians::with_room(room, sh_degree)?,
+            arrays: GaussianArrays::zeroed(room, sh_degree)?,
             properties,
             report: LoadReport::default(),
             dropped: Vec::new(),
-            rows: 0,
-            used: SH + 3 * sh_coefficients(sh_degree),
             stored: ColumnForm::Logarithms,
         })
     }
@@ -81,16 +102,136 @@ impl Assembler {
         self
     }
 
+    /// How many rows there are, those included that are dropped.
+    pub(super) fn rows(&self) -> u64 {
+        self.arrays.positions.len() as u64
+    }
+
+    /// Makes each row of its number, on all cores. Rows come with zeros.
+    pub(super) fn make(
+        mut self,
+        make: impl Fn(usize, &mut [f64; SLOTS]) -> Result<(), Failure> + Sync,
+    ) -> Result<Self, Failure> {
+        let read = |_| Ok(());
+        self.read(ROWS, read, |(), rows| {
+            for number in rows.numbers() {
+                let mut row = [0.0; SLOTS];
+                make(number as usize, &mut row)?;
+                rows.push(&row);
+            }
+            Ok(())
+        })?;
+        Ok(self)
+    }
+
+    /// Takes all rows, `each` at a time: `read` reads what has the rows of these numbers, one after the other on the calling
+    /// thread, and `parse` pushes them, on any.
+    pub(super) fn read<T: Send>(
+        &mut self,
+        each: usize,
+        mut read: impl FnMut(Range<u64>) -> Result<T, Failure>,
+        parse: impl Fn(T, &mut Rows<'_>) -> Result<(), Failure> + Sync,
+    ) -> Result<(), Failure> {
+        let mut is_read = true;
+        let tasks = self.split(each).map_while(|rows| {
+            let read = is_read.then(|| read(rows.numbers()))?;
+            is_read = read.is_ok();
+            Some((rows, read))
+        });
+        let parsed = in_parallel(tasks, |(mut rows, read)| {
+            parse(read?, &mut rows)?;
+            Ok::<_, Failure>((rows.report, rows.dropped))
+        });
+        for part in parsed {
+            let (report, dropped) = part?;
+            self.report.append(report, 0);
+            self.dropped.extend(dropped);
+        }
+        Ok(())
+    }
+
+    /// The places of all rows, `each` at a time.
+    fn split(&mut self, each: usize) -> impl Iterator<Item = Rows<'_>> {
+        let (arrays, stored) = (&mut self.arrays, self.stored);
+        let sh_degree = arrays.sh_degree;
+        let properties = self.properties.iter_mut();
+        let mut properties: Vec<_> = properties
+            .map(|property| (property.values.chunks_mut(each), property.single))
+            .collect();
+        let scales = arrays.scales.chunks_mut(each);
+        let rotations = arrays.rotations.chunks_mut(each);
+        let opacities = arrays.opacities.chunks_mut(each);
+        let sh = arrays.sh.chunks_mut(each * 3 * sh_coefficients(sh_degree));
+        let positions = arrays.positions.chunks_mut(each);
+        let places = positions.zip(scales).zip(rotations).zip(opacities).zip(sh);
+        (0..).step_by(each).zip(places).map(
+            move |(first, ((((positions, scales), rotations), opacities), sh))| Rows {
+                first,
+                pushed: 0,
+                positions,
+                scales,
+                rotations,
+                opacities,
+                sh,
+                sh_degree,
+                properties: properties
+                    .iter_mut()
+                    .map(|(values, single)| (values.next().unwrap_or_default(), *single))
+                    .collect(),
+                report: LoadReport::default(),
+                dropped: Vec::new(),
+                stored,
+            },
+        )
+    }
+
+    /// The scene and the properties, and the report on what was done to them.
+    pub(super) fn finish(mut self) -> (SceneFile, Vec<Property>) {
+        if !self.dropped.is_empty() {
+            let mut dropped = self.dropped.iter().peekable();
+            let is_kept = |row: &u32| dropped.next_if_eq(&&u64::from(*row)).is_none();
+            let kept: Vec<u32> = (0..self.arrays.positions.len() as u32)
+                .filter(is_kept)
+                .collect();
+            self.arrays.keep(&kept);
+            for property in &mut self.properties {
+                keep(&mut property.values, &kept, 1);
+            }
+        }
+        let loaded = SceneFile {
+            gaussians: Gaussians::of_fitting(self.arrays),
+            report: self.report,
+            format: Format::Ply,
+            antialiased: None,
+        };
+        (loaded, self.properties)
+    }
+}
+
+impl Rows<'_> {
+    /// Their numbers.
+    pub(super) fn numbers(&self) -> Range<u64> {
+        self.first..self.first + self.positions.len() as u64
+    }
+
     /// Takes the next row.
     pub(super) fn push(&mut self, row: &GaussianRow) {
-        let element = self.rows;
-        self.rows += 1;
-        let degree = self.gaussians.sh_degree();
-        let unusable = |(slot, &value): (usize, &f64)| {
-            let value = value as f32;
-            !(value.is_finite() || self.is_limit(slot, value))
-        };
-        if let Some(slot) = row[..self.used].iter().enumerate().position(unusable) {
+        let at = self.pushed;
+        let element = self.first + at as u64;
+        self.pushed += 1;
+        let degree = self.sh_degree;
+        let numbers = 3 * sh_coefficients(degree);
+        let used = &row[..SH + numbers];
+        let mut single = [0.0; SLOTS];
+        let single = &mut single[..used.len()];
+        let mut is_finite = true;
+        for (to, &value) in single.iter_mut().zip(used) {
+            *to = value as f32;
+            is_finite &= to.is_finite();
+        }
+        let unusable =
+            |(slot, value): (usize, &f32)| !(value.is_finite() || self.is_limit(slot, *value));
+        if !is_finite && let Some(slot) = single.iter().enumerate().position(unusable) {
             self.drop_row(element, || {
                 let value = row[slot];
                 let beyond = if value.is_finite() {
@@ -139,45 +280,26 @@ impl Assembler {
                 )
             });
         }
-        let mut single = [0.0; SLOTS];
-        for (to, &value) in single.iter_mut().zip(&row[..self.used]) {
-            *to = value as f32;
-        }
-        self.gaussians.push(
-            Vec3::from_slice(&single[..3]),
-            Vec3::from_array(scale),
-            rotation.unwrap_or(Quat::IDENTITY),
-            match self.stored {
-                ColumnForm::Logarithms => (1.0 / (1.0 + (-row[OPACITY]).exp())) as f32,
-                _ => row[OPACITY].clamp(0.0, 1.0) as f32,
-            },
-            &single[SH..self.used],
-        );
-        for (property, &value) in self.properties.iter_mut().zip(&row[SLOTS..]) {
+        self.positions[at] = Vec3::from_slice(&single[..3]);
+        self.scales[at] = Vec3::from_array(scale);
+        self.rotations[at] = rotation.unwrap_or(Quat::IDENTITY);
+        self.opacities[at] = match self.stored {
+            ColumnForm::Logarithms => (1.0 / (1.0 + (-row[OPACITY]).exp())) as f32,
+            _ => row[OPACITY].clamp(0.0, 1.0) as f32,
+        };
+        self.sh[at * numbers..][..numbers].copy_from_slice(&single[SH..]);
+        for ((values, single), &value) in self.properties.iter_mut().zip(&row[SLOTS..]) {
             // Text can have more digits than what it stands for.
-            let value = if property.single {
-                f64::from(value as f32)
-            } else {
-                value
+            values[at] = match single {
+                true => f64::from(value as f32),
+                false => value,
             };
-            property.values.push(value);
         }
     }
 
     fn drop_row(&mut self, row: u64, reason: impl FnOnce() -> String) {
         self.dropped.push(row);
         self.report.drop_element(row, reason);
-    }
-
-    /// The scene and the properties, and the report on what was done to them.
-    pub(super) fn finish(self) -> (SceneFile, Vec<Property>) {
-        let loaded = SceneFile {
-            gaussians: self.gaussians,
-            report: self.report,
-            format: Format::Ply,
-            antialiased: None,
-        };
-        (loaded, self.properties)
     }
 
     /// True when an infinite value is the exact stored form of a sensible one: editors write the logit of opacity 1 as
@@ -274,9 +396,18 @@ mod tests {
     }
 
     fn load(rows: &[[f64; SLOTS]]) -> (Gaussians, LoadReport) {
-        let mut assembler = Assembler::with_room(rows.len() as u64, 0, Vec::new()).unwrap();
-        rows.iter().for_each(|row| assembler.push(row));
-        let (loaded, _) = assembler.finish();
+        load_as(rows, ColumnForm::Logarithms)
+    }
+
+    fn load_as(rows: &[[f64; SLOTS]], stored: ColumnForm) -> (Gaussians, LoadReport) {
+        let made = room(rows.len() as u64, 0, stored).and_then(|room| {
+            room.make(|number, row| {
+                *row = rows[number];
+                Ok(())
+            })
+        });
+        let Ok(made) = made else { panic!("no memory") };
+        let (loaded, _) = made.finish();
         (loaded.gaussians, loaded.report)
     }
 
@@ -340,15 +471,7 @@ mod tests {
         (rows[0][SCALES], rows[0][OPACITY]) = (0.5, 0.25);
         (rows[1][SCALES], rows[1][OPACITY]) = (-0.5, 1.0);
         rows[2][OPACITY] = 1.5;
-        let assembler = Assembler::with_room(3, 0, Vec::new()).unwrap();
-        let mut assembler = assembler.stored(ColumnForm::Plain);
-        rows.iter().for_each(|row| assembler.push(row));
-        let (
-            SceneFile {
-                gaussians, report, ..
-            },
-            _,
-        ) = assembler.finish();
+        let (gaussians, report) = load_as(&rows, ColumnForm::Plain);
         assert_eq!(gaussians.scales()[0], Vec3::new(0.5, 0.0, 0.0));
         assert_eq!(gaussians.scales()[1], gaussians.scales()[0]);
         assert_eq!(gaussians.opacities(), [0.25, 1.0, 1.0]);

@@ -1,5 +1,6 @@
 //! The scene in memory: one array per attribute, as the file had them but in the units the renderer works in.
 
+use bytemuck::allocation::try_zeroed_vec;
 use glam::{Quat, Vec3};
 
 use rara_base::counted::counted;
@@ -269,6 +270,22 @@ impl Gaussians {
 }
 
 impl GaussianArrays {
+    /// Arrays of zeros for exactly `count`, of which memory is taken only where they are written; `None` if there is not
+    /// enough.
+    #[cfg_attr(not(feature = "formats"), allow(dead_code))]
+    pub(super) fn zeroed(count: usize, sh_degree: u32) -> Option<Self> {
+        let numbers = count.checked_mul(3 * sh_coefficients(sh_degree))?;
+        Some(Self {
+            positions: try_zeroed_vec(count).ok()?,
+            scales: try_zeroed_vec(count).ok()?,
+            rotations: try_zeroed_vec(count).ok()?,
+            opacities: try_zeroed_vec(count).ok()?,
+            sh_degree,
+            sh: try_zeroed_vec(numbers).ok()?,
+            antialiased: false,
+        })
+    }
+
     fn check(&self) -> std::result::Result<(), String> {
         if self.sh_degree > MAX_SH_DEGREE {
             let degree = self.sh_degree;

@@ -95,14 +95,6 @@ impl Gaussians {
 impl GaussianArrays {
     /// Drops all but those of these numbers, which ascend.
     pub(super) fn keep(&mut self, numbers: &[u32]) {
-        fn keep<T: Copy>(array: &mut Vec<T>, numbers: &[u32], each: usize) {
-            for (to, &from) in numbers.iter().enumerate() {
-                let from = from as usize * each;
-                array.copy_within(from..from + each, to * each);
-            }
-            array.truncate(numbers.len() * each);
-            array.shrink_to_fit();
-        }
         keep(&mut self.positions, numbers, 1);
         keep(&mut self.scales, numbers, 1);
         keep(&mut self.rotations, numbers, 1);
@@ -113,6 +105,16 @@ impl GaussianArrays {
             3 * super::sh_coefficients(self.sh_degree),
         );
     }
+}
+
+/// Drops all but the elements of these numbers, which ascend; each is so many long.
+pub(super) fn keep<T: Copy>(array: &mut Vec<T>, numbers: &[u32], each: usize) {
+    for (to, &from) in numbers.iter().enumerate() {
+        let from = from as usize * each;
+        array.copy_within(from..from + each, to * each);
+    }
+    array.truncate(numbers.len() * each);
+    array.shrink_to_fit();
 }
 
 #[cfg(test)]

@@ -1,6 +1,8 @@
 //! `.ksplat`: sections of Gaussians, in full precision or relative to the centres of buckets.
 
-use super::super::assemble::{ColumnForm, OPACITY, SCALES, SH, SLOTS};
+use std::ops::Range;
+
+use super::super::assemble::{ColumnForm, OPACITY, ROWS, SCALES, SH, SLOTS};
 use super::super::sh_coefficients;
 use super::bytes::{Bytes, f16_at, f32_at, u16_at};
 use super::{Failure, FormatOutput, colour, room};
@@ -183,14 +185,27 @@ pub(super) fn read(bytes: &[u8]) -> Result<FormatOutput, Failure> {
         .sum();
     let degree = sections.iter().map(|section| section.degree).max();
     let mut made = room(count, degree.unwrap_or(0), ColumnForm::Plain)?;
-    for section in &sections {
+    let mut records = sections.iter().flat_map(|section| {
         let mut buckets = section.buckets();
-        for (index, record) in section.records.chunks_exact(section.record).enumerate() {
+        let records = section.records.chunks_exact(section.record).enumerate();
+        records.map(move |(index, record)| {
+            let bucket = match header.level {
+                0 => 0, // there are none
+                _ => buckets.next().unwrap_or(usize::MAX),
+            };
+            (section, index, record, bucket)
+        })
+    });
+    let read = |numbers: Range<u64>| {
+        let count = (numbers.end - numbers.start) as usize;
+        Ok(records.by_ref().take(count).collect::<Vec<_>>())
+    };
+    made.read(ROWS, read, |records, rows| {
+        for (section, index, record, bucket) in records {
             let mut row = [0.0; SLOTS];
             if header.level == 0 {
                 (0..OPACITY).for_each(|slot| row[slot] = f32_at(record, 4 * slot));
             } else {
-                let bucket = buckets.next().unwrap_or(usize::MAX);
                 let centre = section
                     .buckets
                     .chunks_exact(section.bucket_bytes)
@@ -213,9 +228,10 @@ pub(super) fn read(bytes: &[u8]) -> Result<FormatOutput, Failure> {
                 &header,
                 &mut row[SH + 3..],
             );
-            made.push(&row);
+            rows.push(&row);
         }
-    }
+        Ok(())
+    })?;
     made.report.trailing_bytes = data.0.len() as u64;
     Ok(made.into())
 }

@@ -34,8 +34,8 @@ struct FormatOutput {
 }
 
 impl From<Assembler> for FormatOutput {
-    fn from(mut assembler: Assembler) -> Self {
-        let (elements, dropped) = (assembler.rows, std::mem::take(&mut assembler.dropped));
+    fn from(assembler: Assembler) -> Self {
+        let (elements, dropped) = (assembler.rows(), assembler.dropped.clone());
         let (loaded, _) = assembler.finish();
         Self {
             gaussians: loaded.gaussians,

@@ -1,6 +1,6 @@
 //! `.splat`: nothing but records of 32 bytes, so that only their content tells them from something else.
 
-use super::super::assemble::{ColumnForm, OPACITY, ROTATION, SCALES, SH, SLOTS};
+use super::super::assemble::{ColumnForm, OPACITY, ROTATION, SCALES, SH};
 use super::bytes::f32_at;
 use super::{Failure, FormatOutput, colour, room};
 
@@ -30,10 +30,9 @@ fn quaternion(record: &[u8]) -> [f64; 4] {
 }
 
 pub(super) fn read(bytes: &[u8]) -> Result<FormatOutput, Failure> {
-    let records = bytes.chunks_exact(RECORD);
-    let mut made = room(records.len() as u64, 0, ColumnForm::Plain)?;
-    let mut row = [0.0; SLOTS];
-    for record in records {
+    let count = bytes.len() / RECORD;
+    let made = room(count as u64, 0, ColumnForm::Plain)?.make(|number, row| {
+        let record = &bytes[number * RECORD..][..RECORD];
         for (slot, to) in row[..ROTATION].iter_mut().enumerate() {
             *to = f32_at(record, 4 * slot);
         }
@@ -42,7 +41,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<FormatOutput, Failure> {
         for channel in 0..3 {
             row[SH + channel] = colour(record[24 + channel]);
         }
-        made.push(&row);
-    }
+        Ok(())
+    })?;
     Ok(made.into())
 }

@@ -1,7 +1,7 @@
 //! `.spz`: each attribute in a run of its own, quantised; all in one gzip stream (versions 1 to 3), or each in a stream of
 //! zstd (version 4).
 
-use super::super::assemble::{ColumnForm, OPACITY, ROTATION, SCALES, SH, SLOTS, unit_quaternion};
+use super::super::assemble::{ColumnForm, OPACITY, ROTATION, SCALES, SH, unit_quaternion};
 use super::bytes::{Bytes, f16_at};
 use super::inflate::{self, Gzip};
 use super::{Failure, FormatOutput, room};
@@ -88,12 +88,11 @@ impl SpzHeader {
     /// The Gaussians of six runs; `axes` are the signs that turn the file's axes into ours.
     fn made(&self, runs: [&[u8]; 6], axes: [f64; 3]) -> Result<FormatOutput, Failure> {
         let degree = self.degree.min(3);
-        let mut made = room(self.count, degree, ColumnForm::LogScales)?;
+        let room = room(self.count, degree, ColumnForm::LogScales)?;
         let [position, _, _, _, rotation, harmonics] = self.sizes().map(|size| size as usize);
         let unit = f64::from(1_u32 << self.fraction_bits).recip();
         let sh_signs = signs(axes);
-        for index in 0..self.count as usize {
-            let mut row = [0.0; SLOTS];
+        let mut made = room.make(|index, row| {
             let centre = &runs[0][index * position..][..position];
             for axis in 0..3 {
                 let value = match self.version {
@@ -134,8 +133,8 @@ impl SpzHeader {
             for (at, (to, &byte)) in to {
                 *to = (f64::from(byte) - 128.0) / 128.0 * sh_signs[at / 3];
             }
-            made.push(&row);
-        }
+            Ok(())
+        })?;
         if self.degree > 3 {
             made.report
                 .note("left out the spherical harmonics of degree 4, which are not drawn".into());

@@ -1,11 +1,12 @@
 //! The ascii payload: one element a line; blank lines are skipped, and every message has the number of its line.
 
 use std::io::{BufRead, BufReader, Read};
+use std::ops::Range;
 
 use super::Progress;
 use super::header::PlyHeader;
 use super::layout::{Field, Layout};
-use crate::assemble::{Assembler, GaussianRow};
+use crate::assemble::{Assembler, GaussianRow, ROWS};
 use crate::failure::Failure;
 use rara_base::counted::counted;
 use rara_base::error::shortened;
@@ -43,15 +44,36 @@ pub(super) fn read<R: Read>(
             lines.next(|| format!("`{}` element {index} of {}", element.name, element.count))?;
         }
     }
-    let mut row = layout.row();
-    while assembler.rows < layout.count {
-        lines.next(|| format!("Gaussian {} of {}", assembler.rows, layout.count))?;
-        parse(&lines.line, &layout.fields, &mut row)
-            .map_err(|what| Failure::Format(format!("line {}: {what}", lines.number)))?;
-        assembler.push(&row);
-        if assembler.rows.is_multiple_of(8192) {
-            progress.left(lines.left);
+    // What is wrong with a line is said after what is wrong with the lines before it.
+    let mut ended = None;
+    let read = |numbers: Range<u64>| {
+        if let Some(failure) = ended.take() {
+            return Err(failure);
         }
+        let mut read = Vec::new();
+        for number in numbers {
+            match lines.next(|| format!("Gaussian {number} of {}", layout.count)) {
+                Ok(()) => read.push((lines.number, lines.line.clone())),
+                Err(failure) => {
+                    ended = Some(failure);
+                    break;
+                }
+            }
+        }
+        progress.left(lines.left);
+        Ok(read)
+    };
+    assembler.read(ROWS, read, |lines, rows| {
+        let mut row = layout.row();
+        for (number, line) in lines {
+            parse(&line, &layout.fields, &mut row)
+                .map_err(|what| Failure::Format(format!("line {number}: {what}")))?;
+            rows.push(&row);
+        }
+        Ok(())
+    })?;
+    if let Some(failure) = ended {
+        return Err(failure);
     }
     // Only what follows the last declared element is trailing, and only if it says something.
     if layout.after == Some(0) {

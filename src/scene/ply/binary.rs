@@ -1,6 +1,7 @@
-//! The binary payload, read a few MiB at a time by offsets computed from the header.
+//! The binary payload, read a part at a time by offsets computed from the header.
 
 use std::io::{BufRead, BufReader, ErrorKind, Read, Seek};
+use std::ops::Range;
 
 use ply_rs::ply::{ElementDef, Encoding};
 
@@ -8,11 +9,12 @@ use super::Progress;
 use super::header::PlyHeader;
 use super::layout::{Field, Layout, fixed_size};
 use super::number::Number;
-use crate::assemble::Assembler;
+use crate::assemble::{Assembler, ROWS};
 use crate::failure::Failure;
 
-/// Bytes read at once. A larger chunk gains nothing, a smaller one costs system calls.
-const CHUNK: usize = 4 << 20;
+/// Bytes read at once: few enough to stay in the processor's cache until they are parsed, and enough to make system calls
+/// cheap.
+const CHUNK: usize = 1 << 18;
 
 struct Payload<R> {
     reader: BufReader<R>,
@@ -66,24 +68,32 @@ impl<R: Read + Seek> Payload<R> {
                 stride += kind.size();
             }
         }
-        let rows_at_once = (CHUNK / stride).max(1);
-        let mut chunk = vec![0; stride * rows_at_once.min(layout.count as usize)];
-        let mut row = layout.row();
-        while assembler.rows < layout.count {
-            let rows = (layout.count - assembler.rows).min(rows_at_once as u64) as usize;
-            let chunk = &mut chunk[..rows * stride];
-            self.fill(chunk, || {
-                format!("Gaussian {} of {}", assembler.rows, layout.count)
+        let big_endian = self.big_endian;
+        // As trainers write them; knowing it once is faster than asking for each.
+        let is_usual = !big_endian && used.iter().all(|&(_, kind, _)| matches!(kind, Number::F32));
+        let read = |numbers: Range<u64>| {
+            let mut rows = vec![0; stride * (numbers.end - numbers.start) as usize];
+            self.fill(&mut rows, || {
+                format!("Gaussian {} of {}", numbers.start, layout.count)
             })?;
-            for bytes in chunk.chunks_exact(stride) {
-                for &(offset, kind, slot) in &used {
-                    row[slot] = kind.decode(&bytes[offset..], self.big_endian);
-                }
-                assembler.push(&row);
-            }
             progress.left(self.left);
-        }
-        Ok(())
+            Ok(rows)
+        };
+        assembler.read((CHUNK / stride).max(1), read, |bytes, rows| {
+            let mut row = layout.row();
+            for bytes in bytes.chunks_exact(stride) {
+                match is_usual {
+                    true => used.iter().for_each(|&(offset, _, slot)| {
+                        row[slot] = Number::F32.decode(&bytes[offset..], false);
+                    }),
+                    false => used.iter().for_each(|&(offset, kind, slot)| {
+                        row[slot] = kind.decode(&bytes[offset..], big_endian);
+                    }),
+                }
+                rows.push(&row);
+            }
+            Ok(())
+        })
     }
 
     /// Gaussians with list properties, which are walked one number at a time.
@@ -93,20 +103,20 @@ impl<R: Read + Seek> Payload<R> {
         assembler: &mut Assembler,
         progress: &mut Progress<'_>,
     ) -> Result<(), Failure> {
-        let mut row = layout.row();
-        while assembler.rows < layout.count {
-            self.walk(
-                layout.fields.iter().copied(),
-                "Gaussian",
-                assembler.rows,
-                |slot, value| row[slot] = value,
-            )?;
-            assembler.push(&row);
-            if assembler.rows.is_multiple_of(8192) {
-                progress.left(self.left);
+        let slots = layout.row().len();
+        let read = |numbers: Range<u64>| {
+            let mut rows = vec![0.0; slots * (numbers.end - numbers.start) as usize];
+            for (number, row) in numbers.zip(rows.chunks_exact_mut(slots)) {
+                let fields = layout.fields.iter().copied();
+                self.walk(fields, "Gaussian", number, |slot, value| row[slot] = value)?;
             }
-        }
-        Ok(())
+            progress.left(self.left);
+            Ok(rows)
+        };
+        assembler.read(ROWS, read, |read, rows| {
+            read.chunks_exact(slots).for_each(|row| rows.push(row));
+            Ok(())
+        })
     }
 
     fn skip_element(&mut self, element: &ElementDef) -> Result<(), Failure> {

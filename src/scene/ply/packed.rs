@@ -8,7 +8,7 @@ use super::header::PlyHeader;
 use super::layout::{Field, fixed_size};
 use crate::SH_0;
 use crate::assemble::{
-    Assembler, ColumnForm, OPACITY, ROTATION, SCALES, SH, SLOTS, degree_of, room, unit_quaternion,
+    Assembler, ColumnForm, OPACITY, ROTATION, SCALES, SH, degree_of, room, unit_quaternion,
 };
 use crate::failure::Failure;
 use crate::load::{Progress, Source};
@@ -229,12 +229,11 @@ fn assemble(
             counted(vertices.count, "Gaussian")
         )));
     }
-    let mut assembler = room(vertices.count as u64, degree, ColumnForm::LogScales)?;
-    for index in 0..vertices.count {
+    let room = room(vertices.count as u64, degree, ColumnForm::LogScales)?;
+    room.make(|index, row| {
         let [position, rotation, scale, colour] =
             packed.map(|column| vertices.number(index, column) as u32);
         let chunk = index / CHUNK;
-        let mut row = [0.0; SLOTS];
         row[..SCALES].copy_from_slice(&positions.between(chunks, chunk, thirds(position)));
         row[SCALES..ROTATION].copy_from_slice(&scales.between(chunks, chunk, thirds(scale)));
         row[ROTATION..OPACITY].copy_from_slice(&quaternion(rotation));
@@ -254,9 +253,8 @@ fn assemble(
                     coefficient_of(table.number(index, column));
             }
         }
-        assembler.push(&row);
-    }
-    Ok(assembler)
+        Ok(())
+    })
 }
 
 /// A coefficient above degree 0 by its byte: the middle of one of 256 steps from -4 to 4, but for the ends.

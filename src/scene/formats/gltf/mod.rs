@@ -13,7 +13,7 @@ use serde_json::Value;
 
 use self::accessor::Accessor;
 use self::buffers::Buffers;
-use super::super::assemble::{ColumnForm, OPACITY, ROTATION, SCALES, SH, SLOTS};
+use super::super::assemble::{ColumnForm, OPACITY, ROTATION, SCALES, SH};
 use super::super::{SH_0, sh_coefficients};
 use super::bytes::Bytes;
 use super::{Failure, FormatOutput, json, room, spz};
@@ -247,9 +247,8 @@ fn read_primitive(
     if opacities.is_none() && colours.is_none() {
         return Err(Failure::Format(lacks(&own("OPACITY"))));
     }
-    let mut made = room(count, degree, ColumnForm::Plain)?;
-    for index in 0..count {
-        let mut row = [0.0; SLOTS];
+    let mut made = room(count, degree, ColumnForm::Plain)?.make(|index, row| {
+        let index = index as u64;
         for axis in 0..3 {
             row[axis] = positions.at(index, axis);
             row[SCALES + axis] = scales.at(index, axis);
@@ -273,8 +272,8 @@ fn read_primitive(
                 row[SH + 3 * coefficient + channel] = accessor.at(index, channel);
             }
         }
-        made.push(&row);
-    }
+        Ok(())
+    })?;
     notes.for_each(|note| made.report.note(note));
     Ok(made.into())
 }

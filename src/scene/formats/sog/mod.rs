@@ -12,7 +12,7 @@ use serde_json::Value;
 use self::archive::Archive;
 use self::meta::{Meta, Range};
 use self::picture::Picture;
-use super::super::assemble::{ColumnForm, OPACITY, ROTATION, SCALES, SH, SLOTS, unit_quaternion};
+use super::super::assemble::{ColumnForm, OPACITY, ROTATION, SCALES, SH, unit_quaternion};
 use super::{Failure, FormatOutput, beside, json, room};
 use rara_base::counted::counted;
 
@@ -121,9 +121,7 @@ fn read(
     } else {
         ColumnForm::LogScales
     };
-    let mut made = room(count, degree, stored)?;
-    for index in 0..count as usize {
-        let mut row = [0.0; SLOTS];
+    let made = room(count, degree, stored)?.make(|index, row| {
         for axis in 0..3 {
             let value = u16::from_le_bytes([low.at(index)[axis], high.at(index)[axis]]);
             let [least, most] = meta.bounds[axis];
@@ -164,8 +162,8 @@ fn read(
                 }
             }
         }
-        made.push(&row);
-    }
+        Ok(())
+    })?;
     let mut made = FormatOutput::from(made);
     made.gaussians.set_antialiased(meta.is_antialiased);
     Ok(made)

@@ -5,7 +5,8 @@ use std::ffi::{CStr, CString, c_void};
 
 use ash::{khr, vk};
 
-/// `VK_KHR_synchronization2` and `VK_KHR_dynamic_rendering`, whichever way the device has them.
+/// `VK_KHR_synchronization2` and `VK_KHR_dynamic_rendering`, whichever way the device has them. Each function wants of its
+/// caller what Vulkan's of that name wants.
 pub(super) struct Commands {
     synchronization2: khr::synchronization2::DeviceFn,
     dynamic_rendering: khr::dynamic_rendering::DeviceFn,
@@ -32,8 +33,6 @@ impl Commands {
         }
     }
 
-    /// # Safety
-    /// As for `vkCmdPipelineBarrier2`.
     pub(super) unsafe fn pipeline_barrier(
         &self,
         cmd: vk::CommandBuffer,
@@ -43,8 +42,6 @@ impl Commands {
         unsafe { (self.synchronization2.cmd_pipeline_barrier2_khr)(cmd, dependency) };
     }
 
-    /// # Safety
-    /// As for `vkCmdWriteTimestamp2`.
     pub(super) unsafe fn write_timestamp(
         &self,
         cmd: vk::CommandBuffer,
@@ -56,8 +53,6 @@ impl Commands {
         unsafe { (self.synchronization2.cmd_write_timestamp2_khr)(cmd, stage, pool, query) };
     }
 
-    /// # Safety
-    /// As for `vkQueueSubmit2`.
     pub(super) unsafe fn submit(
         &self,
         queue: vk::Queue,
@@ -68,8 +63,6 @@ impl Commands {
         unsafe { (self.synchronization2.queue_submit2_khr)(queue, 1, submit, fence) }.result()
     }
 
-    /// # Safety
-    /// As for `vkCmdBeginRendering`.
     pub(super) unsafe fn begin_rendering(
         &self,
         cmd: vk::CommandBuffer,
@@ -79,8 +72,6 @@ impl Commands {
         unsafe { (self.dynamic_rendering.cmd_begin_rendering_khr)(cmd, info) };
     }
 
-    /// # Safety
-    /// As for `vkCmdEndRendering`.
     pub(super) unsafe fn end_rendering(&self, cmd: vk::CommandBuffer) {
         // SAFETY: the caller's promise.
         unsafe { (self.dynamic_rendering.cmd_end_rendering_khr)(cmd) };

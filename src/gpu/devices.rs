@@ -30,26 +30,23 @@ pub struct DeviceInfo {
 impl DeviceInfo {
     /// The kind in a word.
     pub fn kind_name(&self) -> &'static str {
-        match self.kind {
-            vk::PhysicalDeviceType::DISCRETE_GPU => "discrete",
-            vk::PhysicalDeviceType::INTEGRATED_GPU => "integrated",
-            vk::PhysicalDeviceType::VIRTUAL_GPU => "virtual",
-            vk::PhysicalDeviceType::CPU => "cpu",
-            _ => "other",
-        }
+        KINDS.get(self.rank()).map_or("other", |(_, name)| name)
     }
 
     /// The rank for the choice; a low one is better.
-    fn rank(&self) -> u32 {
-        match self.kind {
-            vk::PhysicalDeviceType::DISCRETE_GPU => 0,
-            vk::PhysicalDeviceType::INTEGRATED_GPU => 1,
-            vk::PhysicalDeviceType::VIRTUAL_GPU => 2,
-            vk::PhysicalDeviceType::CPU => 3,
-            _ => 4,
-        }
+    fn rank(&self) -> usize {
+        let known = KINDS.iter().position(|(kind, _)| *kind == self.kind);
+        known.unwrap_or(KINDS.len())
     }
 }
+
+/// The kinds of device, the best first.
+const KINDS: [(vk::PhysicalDeviceType, &str); 4] = [
+    (vk::PhysicalDeviceType::DISCRETE_GPU, "discrete"),
+    (vk::PhysicalDeviceType::INTEGRATED_GPU, "integrated"),
+    (vk::PhysicalDeviceType::VIRTUAL_GPU, "virtual"),
+    (vk::PhysicalDeviceType::CPU, "cpu"),
+];
 
 /// Names, kind, memory and support of a device.
 ///

@@ -25,6 +25,7 @@ pub struct ImageDesc<'a> {
 }
 
 /// A 2D image that is rendered to and copied from; dropping it frees it, when the device is done with it.
+#[derive(Debug)]
 pub struct Image {
     device: Device,
     handle: vk::Image,
@@ -47,14 +48,7 @@ pub(super) const WHOLE: vk::ImageSubresourceRange = vk::ImageSubresourceRange {
 impl Device {
     #[doc(hidden)]
     pub fn create_image(&self, desc: &ImageDesc<'_>) -> Result<Image> {
-        Image::new(self, desc)
-    }
-}
-
-impl Image {
-    #[doc(hidden)]
-    pub fn new(device: &Device, desc: &ImageDesc<'_>) -> Result<Self> {
-        let limit = device.support().max_image_size;
+        let limit = self.support().max_image_size;
         if desc.width == 0 || desc.height == 0 || desc.width.max(desc.height) > limit {
             let size = format!("{} x {}", desc.width, desc.height);
             return Err(Error::Invalid(format!(
@@ -74,12 +68,12 @@ impl Image {
             .samples(vk::SampleCountFlags::TYPE_1)
             .tiling(vk::ImageTiling::OPTIMAL)
             .usage(vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::TRANSFER_SRC);
-        // SAFETY: the device is alive as long as `device`.
+        // SAFETY: the device is alive as long as `self`.
         let handle =
-            unsafe { device.raw().create_image(&info, None) }.map_err(failed("vkCreateImage"))?;
+            unsafe { self.raw().create_image(&info, None) }.map_err(failed("vkCreateImage"))?;
         // From here on dropping `image` cleans up.
-        let mut image = Self {
-            device: device.clone(),
+        let mut image = Image {
+            device: self.clone(),
             handle,
             view: vk::ImageView::null(),
             extent,
@@ -88,8 +82,8 @@ impl Image {
             allocation: None,
         };
         // SAFETY: the image was created just now.
-        let requirements = unsafe { device.raw().get_image_memory_requirements(handle) };
-        let allocation = device.allocate(&AllocationCreateDesc {
+        let requirements = unsafe { self.raw().get_image_memory_requirements(handle) };
+        let allocation = self.allocate(&AllocationCreateDesc {
             name: desc.name,
             requirements,
             location: MemoryLocation::GpuOnly,
@@ -111,8 +105,7 @@ impl Image {
         let allocation = image.allocation.insert(allocation);
         // SAFETY: the memory fits the requirements it was allocated for, and the image is not bound yet.
         unsafe {
-            device
-                .raw()
+            self.raw()
                 .bind_image_memory(handle, allocation.memory(), allocation.offset())
         }
         .map_err(failed("vkBindImageMemory"))?;
@@ -122,13 +115,15 @@ impl Image {
             .format(desc.format)
             .subresource_range(WHOLE);
         // SAFETY: the image is bound and has the view's format.
-        image.view = unsafe { device.raw().create_image_view(&info, None) }
+        image.view = unsafe { self.raw().create_image_view(&info, None) }
             .map_err(failed("vkCreateImageView"))?;
-        device.set_name(handle, desc.name);
-        device.set_name(image.view, desc.name);
+        self.set_name(handle, desc.name);
+        self.set_name(image.view, desc.name);
         Ok(image)
     }
+}
 
+impl Image {
     pub fn handle(&self) -> vk::Image {
         self.handle
     }
@@ -295,15 +290,5 @@ impl Drop for Image {
         if let Some(allocation) = self.allocation.take() {
             self.device.free(&self.name, allocation);
         }
-    }
-}
-
-impl std::fmt::Debug for Image {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Image")
-            .field("name", &self.name)
-            .field("extent", &self.extent)
-            .field("format", &self.format)
-            .finish_non_exhaustive()
     }
 }

@@ -46,6 +46,7 @@ impl PushConstants {
 }
 
 /// A pipeline layout for the buffers of one or several shaders.
+#[derive(Debug)]
 pub struct Layout {
     device: Device,
     pub raw: vk::PipelineLayout,

@@ -70,6 +70,7 @@ pub unsafe trait MemorySource: Send + Sync {
 }
 
 /// Device memory that something is bound to.
+#[derive(Debug)]
 pub(super) enum Memory {
     Own(Allocation),
     Lent { lent: LentMemory, size: u64 },

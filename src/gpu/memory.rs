@@ -29,9 +29,10 @@ pub struct BufferDesc<'a> {
 /// A buffer with every usage that a pass can ask of it, shared by its clones; dropping the last frees it.
 ///
 /// The device must be done with it by then: who submits work waits for it first.
-#[derive(Clone)]
+#[derive(Debug, Clone)]
 pub struct Buffer(Arc<BufferInner>);
 
+#[derive(Debug)]
 struct BufferInner {
     device: Device,
     handle: vk::Buffer,
@@ -46,13 +47,6 @@ struct BufferInner {
 impl Device {
     #[doc(hidden)]
     pub fn create_buffer(&self, desc: &BufferDesc<'_>) -> Result<Buffer> {
-        Buffer::new(self, desc)
-    }
-}
-
-impl Buffer {
-    #[doc(hidden)]
-    pub fn new(device: &Device, desc: &BufferDesc<'_>) -> Result<Self> {
         use vk::BufferUsageFlags as Usage;
         let size = desc.size.max(1).next_multiple_of(16);
         let full = |why: &str| {
@@ -61,15 +55,15 @@ impl Buffer {
                 desc.name,
                 bytes(size)
             );
-            let used = bytes(device.device_bytes());
+            let used = bytes(self.device_bytes());
             Error::Memory(format!(
                 "{what} ({why}); {used} are in use by this renderer"
             ))
         };
-        if size > device.support().max_buffer_size {
+        if size > self.support().max_buffer_size {
             return Err(full(&format!(
                 "the device's largest is {}",
-                bytes(device.support().max_buffer_size)
+                bytes(self.support().max_buffer_size)
             )));
         }
         let info = vk::BufferCreateInfo::default().size(size).usage(
@@ -79,12 +73,12 @@ impl Buffer {
                 | Usage::TRANSFER_DST
                 | Usage::INDIRECT_BUFFER,
         );
-        // SAFETY: the device is alive as long as `device`.
+        // SAFETY: the device is alive as long as `self`.
         let handle =
-            unsafe { device.raw().create_buffer(&info, None) }.map_err(failed("vkCreateBuffer"))?;
+            unsafe { self.raw().create_buffer(&info, None) }.map_err(failed("vkCreateBuffer"))?;
         // From here on dropping `buffer` cleans up.
         let mut buffer = BufferInner {
-            device: device.clone(),
+            device: self.clone(),
             handle,
             address: 0,
             size,
@@ -93,8 +87,8 @@ impl Buffer {
             allocation: None,
         };
         // SAFETY: the buffer was created just now.
-        let requirements = unsafe { device.raw().get_buffer_memory_requirements(handle) };
-        let allocation = device.allocate(&AllocationCreateDesc {
+        let requirements = unsafe { self.raw().get_buffer_memory_requirements(handle) };
+        let allocation = self.allocate(&AllocationCreateDesc {
             name: desc.name,
             requirements,
             location: match desc.location {
@@ -113,19 +107,20 @@ impl Buffer {
         let allocation = buffer.allocation.insert(allocation);
         // SAFETY: the memory fits the requirements it was allocated for, and the buffer is not bound yet.
         unsafe {
-            device
-                .raw()
+            self.raw()
                 .bind_buffer_memory(handle, allocation.memory(), allocation.offset())
         }
         .map_err(failed("vkBindBufferMemory"))?;
         let info = vk::BufferDeviceAddressInfo::default().buffer(handle);
         // SAFETY: the buffer is bound, has the address usage, and the feature is a requirement.
-        buffer.address = unsafe { device.raw().get_buffer_device_address(&info) };
-        device.set_name(handle, desc.name);
+        buffer.address = unsafe { self.raw().get_buffer_device_address(&info) };
+        self.set_name(handle, desc.name);
         log::debug!("buffer \"{}\" of {} was made", desc.name, bytes(size));
-        Ok(Self(Arc::new(buffer)))
+        Ok(Buffer(Arc::new(buffer)))
     }
+}
 
+impl Buffer {
     #[doc(hidden)]
     pub fn device(&self) -> &Device {
         &self.0.device
@@ -230,16 +225,6 @@ impl Drop for BufferInner {
         if let Some(allocation) = self.allocation.take() {
             self.device.free(&self.name, allocation);
         }
-    }
-}
-
-impl std::fmt::Debug for Buffer {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Buffer")
-            .field("name", &self.0.name)
-            .field("size", &self.0.size)
-            .field("location", &self.0.location)
-            .finish_non_exhaustive()
     }
 }
 

@@ -29,7 +29,7 @@ pub struct ComputeDesc<'a> {
 }
 
 /// A compute pipeline, shared by its clones; dropping the last frees it, when the device is done with it.
-#[derive(Clone)]
+#[derive(Debug, Clone)]
 pub struct ComputePipeline(Arc<Pipeline>);
 
 impl ComputePipeline {
@@ -119,7 +119,7 @@ pub struct GraphicsDesc<'a> {
 }
 
 /// A graphics pipeline, shared by its clones; dropping the last frees it, when the device is done with it.
-#[derive(Clone)]
+#[derive(Debug, Clone)]
 pub struct GraphicsPipeline {
     inner: Arc<Pipeline>,
     mesh: bool,
@@ -251,6 +251,7 @@ impl GraphicsPipeline {
 }
 
 /// The part that both kinds of pipelines share.
+#[derive(Debug)]
 pub struct Pipeline {
     pub name: &'static str,
     pub raw: vk::Pipeline,
@@ -282,23 +283,6 @@ impl Drop for Pipeline {
     fn drop(&mut self) {
         // SAFETY: whoever submitted work with the pipeline waited for it.
         unsafe { self.device.raw().destroy_pipeline(self.raw, None) };
-    }
-}
-
-impl std::fmt::Debug for ComputePipeline {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("ComputePipeline")
-            .field("name", &self.0.name)
-            .finish_non_exhaustive()
-    }
-}
-
-impl std::fmt::Debug for GraphicsPipeline {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("GraphicsPipeline")
-            .field("name", &self.inner.name)
-            .field("mesh", &self.mesh)
-            .finish_non_exhaustive()
     }
 }
 

@@ -11,6 +11,7 @@ use rara_base::stats::PassStatistics;
 ///
 /// Both timestamps of a pass are written when all earlier work is done, so times of passes in a row add up to the
 /// whole, and overlap is charged to the pass that ends later.
+#[derive(Debug)]
 pub struct Timer {
     device: Device,
     /// Null where the device has no timestamps.
@@ -36,6 +37,7 @@ pub fn measures_dispatches() -> bool {
 }
 
 /// Pipeline statistics of the passes: pass `i` has query `i`.
+#[derive(Debug)]
 struct Statistics {
     pool: vk::QueryPool,
     /// The pass that counts. Passes within it are counted with it, as Vulkan has only one such query active at a time.
@@ -301,15 +303,6 @@ impl Drop for Timer {
             // SAFETY: as above.
             unsafe { self.device.raw().destroy_query_pool(statistics.pool, None) };
         }
-    }
-}
-
-impl std::fmt::Debug for Timer {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Timer")
-            .field("capacity", &self.capacity)
-            .field("names", &self.names)
-            .finish_non_exhaustive()
     }
 }
 

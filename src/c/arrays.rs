@@ -1,12 +1,10 @@
 //! Gaussians from a host's own arrays.
 
-use std::ptr::null;
-
 use rara::ash::vk;
 use rara::glam::{Quat, Vec3};
 use rara::{Error, GaussianArrays, Gaussians, Result};
 
-use crate::boundary::{RaraResult, guard, invalid, read, versioned, write};
+use crate::boundary::{RaraResult, Versioned, guard, invalid, read, versioned, write};
 use crate::gaussians::RaraGaussians;
 use crate::handles::create;
 
@@ -49,30 +47,13 @@ pub struct RaraGaussianArrays {
 
 versioned!(RaraGaussianArrays);
 
-const NOTHING: RaraGaussianArrays = RaraGaussianArrays {
-    struct_size: size_of::<RaraGaussianArrays>(),
-    count: 0,
-    positions: null(),
-    position_stride: 0,
-    scales: null(),
-    scale_stride: 0,
-    rotations: null(),
-    rotation_stride: 0,
-    opacities: null(),
-    opacity_stride: 0,
-    sh_degree: 0,
-    sh: null(),
-    sh_stride: 0,
-    antialiased: vk::FALSE,
-};
-
 /// No Gaussians, of degree 0, in arrays without gaps. `arrays_size` is sizeof *arrays.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_gaussian_arrays_default(
     arrays: *mut RaraGaussianArrays,
     arrays_size: usize,
 ) -> RaraResult {
-    guard(|| write(arrays, arrays_size, &NOTHING, "arrays"))
+    guard(|| write(arrays, arrays_size, &Versioned::BLANK, "arrays"))
 }
 
 /// Copies Gaussians from a host's arrays. RARA_ERROR_INVALID names the array and, where a number in it cannot be drawn (one
@@ -84,7 +65,7 @@ pub unsafe extern "C" fn rara_gaussians_from_arrays(
     gaussians: *mut *mut RaraGaussians,
 ) -> RaraResult {
     create(gaussians, "gaussians", || {
-        let arrays = read(arrays, NOTHING, "arrays")?;
+        let arrays = read(arrays, Versioned::BLANK, "arrays")?;
         let gaussians = Gaussians::new(arrays.copied()?).map_err(|error| {
             Error::Invalid(format!("arrays->{error}")) // which begins with the array's name
         })?;

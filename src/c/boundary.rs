@@ -186,6 +186,8 @@ pub(crate) fn recording(cmd: vk::CommandBuffer) -> Result<vk::CommandBuffer> {
 pub(crate) unsafe trait Versioned: Copy {
     /// Its name in C.
     const NAME: &'static str;
+    /// Its size, and nothing else: null, false and 0.
+    const BLANK: Self;
 }
 
 /// Says of a struct that it is [`Versioned`]: it must be `repr(C)`, begin with its size, and hold only numbers, handles and
@@ -195,6 +197,11 @@ macro_rules! versioned {
         // SAFETY: it is as the macro asks, which tests/c/layouts.rs holds to what C compilers do.
         unsafe impl $crate::boundary::Versioned for $name {
             const NAME: &'static str = stringify!($name);
+            const BLANK: Self = Self {
+                struct_size: size_of::<Self>(),
+                // SAFETY: zeros are numbers, and null.
+                ..unsafe { std::mem::zeroed() }
+            };
         }
     };
 }

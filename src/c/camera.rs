@@ -4,7 +4,7 @@ use rara::glam::{DMat3, DMat4, DVec3};
 use rara::scene::Bounds;
 use rara::{Camera, Projection, Result};
 
-use crate::boundary::{RaraResult, guard, invalid, list, read, versioned, write};
+use crate::boundary::{RaraResult, Versioned, guard, invalid, list, read, versioned, write};
 use crate::gaussians::RaraGaussians;
 use crate::handles::alive;
 
@@ -91,19 +91,9 @@ impl From<Camera> for RaraCamera {
 
 /// A camera that is none, with no planes.
 pub(crate) const NOWHERE: RaraCamera = RaraCamera {
-    struct_size: size_of::<RaraCamera>(),
-    width: 0,
-    height: 0,
-    projection: RARA_PROJECTION_PERSPECTIVE,
-    fx: 0.0,
-    fy: 0.0,
-    cx: 0.0,
-    cy: 0.0,
-    eye: [0.0; 3],
-    rotation: [0.0; 9],
     clip_near: f64::NEG_INFINITY,
     clip_far: f64::INFINITY,
-    near_cut: 0.0,
+    ..Versioned::BLANK
 };
 
 /// Reads a host's camera.

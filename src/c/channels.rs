@@ -2,7 +2,7 @@
 
 use rara::{Aov, Headless, Result, ShFormat};
 
-use crate::boundary::{RaraResult, guard, invalid, read, versioned, write};
+use crate::boundary::{RaraResult, Versioned, guard, invalid, read, versioned, write};
 use crate::camera::{self, RaraCamera};
 use crate::clip::{self, RaraClip};
 use crate::handles::alive;
@@ -97,12 +97,10 @@ pub unsafe extern "C" fn rara_channels_default(
 ) -> RaraResult {
     guard(|| {
         let mut default = RaraChannels {
-            struct_size: size_of::<RaraChannels>(),
             aovs,
             width,
             height,
-            values: std::ptr::null_mut(),
-            value_count: 0,
+            ..Versioned::BLANK
         };
         let wanted = default.wanted();
         default.value_count = wanted.as_ref().map_or(0, |(_, count)| *count);
@@ -139,7 +137,7 @@ pub unsafe extern "C" fn rara_renderer_channels(
 ) -> RaraResult {
     guard(|| {
         let renderer = alive(renderer, "renderer")?;
-        let room = read(channels, NOWHERE, "channels")?;
+        let room = read(channels, Versioned::BLANK, "channels")?;
         let (aovs, count) = room.wanted()?;
         let camera = camera::camera(camera)?;
         if (room.width, room.height) != (camera.width, camera.height) {
@@ -176,12 +174,3 @@ pub unsafe extern "C" fn rara_renderer_channels(
         Ok(())
     })
 }
-
-const NOWHERE: RaraChannels = RaraChannels {
-    struct_size: size_of::<RaraChannels>(),
-    aovs: 0,
-    width: 0,
-    height: 0,
-    values: std::ptr::null_mut(),
-    value_count: 0,
-};

@@ -4,8 +4,8 @@ use rara::ash::vk;
 use rara::gpu::DepthImage;
 use rara::{DepthDesc, DepthMap, Projection, Result};
 
-use crate::boundary::{RaraResult, exclusive, guard, invalid, read, versioned, write};
-use crate::camera::{RARA_PROJECTION_PERSPECTIVE, RaraProjection, projection, projection_in_c};
+use crate::boundary::{RaraResult, Versioned, exclusive, guard, invalid, read, versioned, write};
+use crate::camera::{RaraProjection, projection, projection_in_c};
 
 /// The values in a depth buffer: at a depth z along the view axis, world units, it holds offset + scale / z in perspective,
 /// offset - scale z without. It never grows.
@@ -93,23 +93,15 @@ versioned!(RaraDepthDesc);
 impl RaraDepthDesc {
     fn new(format: vk::Format, map: RaraDepthMap) -> Self {
         Self {
-            struct_size: size_of::<Self>(),
             format,
-            stencil: vk::FALSE,
-            readable: vk::FALSE,
             map,
+            ..Versioned::BLANK
         }
     }
 }
 
 pub(crate) unsafe fn depth_desc(desc: *const RaraDepthDesc) -> Result<DepthDesc> {
-    let nowhere = RaraDepthMap {
-        offset: 0.0,
-        scale: 0.0,
-        projection: RARA_PROJECTION_PERSPECTIVE,
-    };
-    let default = RaraDepthDesc::new(vk::Format::UNDEFINED, nowhere);
-    let desc = read(desc, default, "desc->depth")?;
+    let desc = read(desc, Versioned::BLANK, "desc->depth")?;
     if desc.format == vk::Format::UNDEFINED {
         return invalid("desc->depth->format is VK_FORMAT_UNDEFINED");
     }
@@ -157,14 +149,11 @@ versioned!(RaraDepthImage);
 impl RaraDepthImage {
     fn new(image: vk::Image, width: u32, height: u32) -> Self {
         Self {
-            struct_size: size_of::<Self>(),
             image,
             layout: vk::ImageLayout::TRANSFER_SRC_OPTIMAL,
             width,
             height,
-            layer: 0,
-            x: 0,
-            y: 0,
+            ..Versioned::BLANK
         }
     }
 }

@@ -8,7 +8,7 @@ use rara::ash::{self, vk};
 use rara::gpu::{AdoptDesc, Device, DeviceShape};
 use rara::{Error, Result};
 
-use crate::boundary::{RaraResult, guard, invalid, read, versioned, write};
+use crate::boundary::{RaraResult, Versioned, guard, invalid, read, versioned, write};
 use crate::handles::{create, destroy, number};
 use crate::lent::{Lender, RaraAllocate, RaraFree};
 
@@ -84,32 +84,10 @@ pub struct RaraAdoptDesc {
 
 versioned!(RaraAdoptDesc);
 
-impl RaraAdoptDesc {
-    fn new() -> Self {
-        Self {
-            struct_size: size_of::<Self>(),
-            get_instance_proc_addr: None,
-            instance: vk::Instance::null(),
-            physical_device: vk::PhysicalDevice::null(),
-            device: vk::Device::null(),
-            queue: vk::Queue::null(),
-            queue_family: 0,
-            mesh_shader: vk::FALSE,
-            push_descriptor: vk::FALSE,
-            debug_utils: vk::FALSE,
-            pipeline_cache: vk::PipelineCache::null(),
-            api_version: vk::API_VERSION_1_3,
-            full_subgroups: vk::FALSE,
-            shape: RARA_SHAPE_AUTO,
-            subgroup: 0,
-            release: None,
-            release_user: std::ptr::null_mut(),
-            allocate: None,
-            free: None,
-            allocator_user: std::ptr::null_mut(),
-        }
-    }
-}
+const NOTHING: RaraAdoptDesc = RaraAdoptDesc {
+    api_version: vk::API_VERSION_1_3,
+    ..Versioned::BLANK
+};
 
 /// Takes the news that rara uses nothing of the host's any more.
 pub type RaraRelease = Option<unsafe extern "C" fn(user: *mut c_void)>;
@@ -142,7 +120,7 @@ pub unsafe extern "C" fn rara_adopt_desc_default(
     desc: *mut RaraAdoptDesc,
     desc_size: usize,
 ) -> RaraResult {
-    guard(|| write(desc, desc_size, &RaraAdoptDesc::new(), "desc"))
+    guard(|| write(desc, desc_size, &NOTHING, "desc"))
 }
 
 /// Works with the host's device. Nothing in `desc` is ever destroyed, and only rara_scene_buffers_upload and
@@ -159,7 +137,7 @@ pub unsafe extern "C" fn rara_device_adopt(
     device: *mut *mut RaraDevice,
 ) -> RaraResult {
     create(device, "device", || {
-        let desc = read(desc, RaraAdoptDesc::new(), "desc")?;
+        let desc = read(desc, NOTHING, "desc")?;
         let instance = load_instance(
             desc.get_instance_proc_addr,
             desc.instance,

@@ -1,12 +1,11 @@
 //! Layers: scenes of several sets of Gaussians, and how each of them is shown.
 
 use std::ffi::c_char;
-use std::ptr::null;
 
 use rara::ash::vk;
 use rara::{Error, LayerState, Result};
 
-use crate::boundary::{RaraResult, guard, invalid, read, read_list, versioned, write};
+use crate::boundary::{RaraResult, Versioned, guard, invalid, read, read_list, versioned, write};
 use crate::clip::{self, RaraClip};
 use crate::gaussians::RaraGaussians;
 use crate::handles::{alive, alone};
@@ -79,11 +78,9 @@ versioned!(RaraLayer);
 impl RaraLayer {
     fn new(name: *const c_char, gaussians: *const RaraGaussians) -> Self {
         Self {
-            struct_size: size_of::<Self>(),
             name,
             gaussians,
-            state: null(),
-            clip: null(),
+            ..Versioned::BLANK
         }
     }
 
@@ -107,12 +104,7 @@ pub(crate) unsafe fn given(layers: *const RaraLayer, layer_count: usize) -> Resu
     if layer_count == 0 {
         return invalid("layer_count is 0, and a scene has at least one layer: give one or more");
     }
-    let layers = read_list(
-        layers,
-        layer_count,
-        RaraLayer::new(null(), null()),
-        "layers",
-    )?;
+    let layers: Vec<RaraLayer> = read_list(layers, layer_count, Versioned::BLANK, "layers")?;
     let layers = layers.iter().enumerate();
     let made = layers.map(|(index, layer)| layer.layer(&format!("layers[{index}]")));
     made.collect()

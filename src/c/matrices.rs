@@ -4,7 +4,9 @@ use rara::ash::vk;
 use rara::glam::{DMat4, Mat4};
 use rara::{Camera, Ndc, Result};
 
-use crate::boundary::{RaraResult, exclusive, guard, invalid, list, read, versioned, write};
+use crate::boundary::{
+    RaraResult, Versioned, exclusive, guard, invalid, list, read, versioned, write,
+};
 use crate::camera::{NOWHERE, RaraCamera};
 use crate::depth::RaraDepthMap;
 
@@ -38,13 +40,7 @@ pub struct RaraNdc {
 
 versioned!(RaraNdc);
 
-const VULKAN: RaraNdc = RaraNdc {
-    struct_size: size_of::<RaraNdc>(),
-    order: RARA_MATRIX_ORDER_TRANSLATION_LAST,
-    y_up: vk::FALSE,
-    negative_one_to_one: vk::FALSE,
-    reversed: vk::FALSE,
-};
+const VULKAN: RaraNdc = Versioned::BLANK;
 
 /// Vulkan's own: y down, depths from 0 to 1, nearer is less, a view's translation in numbers 12 to 14. `ndc_size` is sizeof
 /// *ndc.

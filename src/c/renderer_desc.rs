@@ -4,7 +4,7 @@ use rara::ash::vk;
 use rara::gpu::{Bindings, Target};
 use rara::{ColorSpace, ExpectedDepthDesc, RendererDesc, Result};
 
-use crate::boundary::{RaraResult, guard, invalid, read, versioned, write};
+use crate::boundary::{RaraResult, Versioned, guard, invalid, read, versioned, write};
 use crate::depth::{self, RaraDepthDesc};
 
 /// How shaders reach buffers.
@@ -70,20 +70,10 @@ versioned!(RaraRendererDesc);
 impl RaraRendererDesc {
     fn new(color_format: vk::Format) -> Self {
         Self {
-            struct_size: size_of::<Self>(),
             color_format,
             samples: vk::SampleCountFlags::TYPE_1,
-            depth: std::ptr::null(),
-            render_pass: vk::RenderPass::null(),
-            subpass: 0,
-            bindings: RARA_BINDINGS_ADDRESS,
-            timing: vk::FALSE,
-            reuse: vk::FALSE,
             frames_in_flight: 1,
-            expected_depth_format: vk::Format::UNDEFINED,
-            expected_depth_render_pass: vk::RenderPass::null(),
-            expected_depth_subpass: 0,
-            color_space: RARA_COLOR_SPACE_STORED,
+            ..Versioned::BLANK
         }
     }
 }

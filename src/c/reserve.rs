@@ -2,7 +2,7 @@
 
 use rara::{FrameLimits, Preset, Result, Settings};
 
-use crate::boundary::{RaraResult, exclusive, guard, read, read_list, versioned, write};
+use crate::boundary::{RaraResult, Versioned, exclusive, guard, read, read_list, versioned, write};
 use crate::camera::{self, RaraCamera};
 use crate::device::RaraDevice;
 use crate::frame::RaraFrame;
@@ -49,7 +49,6 @@ impl RaraFrameLimits {
     fn new(width: u32, height: u32, gaussians: u32) -> Self {
         let usual = FrameLimits::new((width, height), gaussians);
         Self {
-            struct_size: size_of::<Self>(),
             width,
             height,
             gaussians,
@@ -57,9 +56,7 @@ impl RaraFrameLimits {
             sh_format: RARA_SH_FORMAT_PACKED,
             planes: usual.planes,
             surfaces: usual.surfaces,
-            pairs: 0,
-            settings: std::ptr::null(),
-            settings_count: 0,
+            ..Versioned::BLANK
         }
     }
 

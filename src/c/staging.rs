@@ -1,12 +1,11 @@
 //! The host's own memory, which scenes are copied from.
 
 use std::ffi::c_void;
-use std::ptr::null_mut;
 
 use rara::ash::vk;
 use rara::{Result, Staging};
 
-use crate::boundary::{RaraResult, guard, invalid, memory, read, versioned, write};
+use crate::boundary::{RaraResult, Versioned, guard, invalid, memory, read, versioned, write};
 
 /// A part of the host's memory that the device can copy from.
 #[repr(C)]
@@ -26,27 +25,19 @@ pub struct RaraStaging {
 
 versioned!(RaraStaging);
 
-const NOTHING: RaraStaging = RaraStaging {
-    struct_size: size_of::<RaraStaging>(),
-    buffer: vk::Buffer::null(),
-    offset: 0,
-    mapped: null_mut(),
-    size: 0,
-};
-
 /// No memory; the host replaces the buffer and what follows. `staging_size` is sizeof *staging.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_staging_default(
     staging: *mut RaraStaging,
     staging_size: usize,
 ) -> RaraResult {
-    guard(|| write(staging, staging_size, &NOTHING, "staging"))
+    guard(|| write(staging, staging_size, &Versioned::BLANK, "staging"))
 }
 
 /// # Safety
 /// `staging` is null, or points to one that is as its fields say, and nobody else uses its range for `'a`.
 pub(crate) unsafe fn staging<'a>(staging: *const RaraStaging) -> Result<Staging<'a>> {
-    let staging = read(staging, NOTHING, "staging")?;
+    let staging = read(staging, Versioned::BLANK, "staging")?;
     if staging.buffer == vk::Buffer::null() {
         return invalid("staging->buffer is null");
     }

@@ -4,7 +4,7 @@ use std::ffi::c_char;
 
 use rara::ash::vk;
 
-use crate::boundary::{RaraResult, guard, versioned, write};
+use crate::boundary::{RaraResult, Versioned, guard, versioned, write};
 use crate::handles::alive;
 use crate::renderer::RaraRenderer;
 use crate::settings::{
@@ -80,7 +80,6 @@ pub unsafe extern "C" fn rara_renderer_stats(
         let (counts, raster) = (renderer.counts(), renderer.raster());
         let (times, skipped) = (renderer.pass_times(), renderer.skipped());
         let mut found = RaraFrameStats {
-            struct_size: size_of::<RaraFrameStats>(),
             visible: counts.visible,
             cutoff: counts.cutoff,
             invisible: counts.invisible,
@@ -95,16 +94,12 @@ pub unsafe extern "C" fn rara_renderer_stats(
             raster_reason: fixed(raster.reason),
             fell_back: renderer.fell_back().into(),
             pass_count: times.len().min(RARA_MAX_PASSES) as u32,
-            passes: [RaraPassTime {
-                name: fixed(""),
-                ms: 0.0,
-            }; RARA_MAX_PASSES],
             gpu_ms: match times.is_empty() {
                 true => f64::NAN,
                 false => times.iter().map(|pass| pass.ms).sum(),
             },
             skipped_count: skipped.len().min(RARA_MAX_PASSES) as u32,
-            skipped: [fixed(""); RARA_MAX_PASSES],
+            ..Versioned::BLANK
         };
         for (to, from) in found.passes.iter_mut().zip(&times) {
             to.name = fixed(from.name);

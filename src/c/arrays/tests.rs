@@ -1,6 +1,6 @@
 //! Gaussians of a host's arrays are those of a file, whatever lies between them, and what is wrong with them is named.
 
-use std::ptr::null_mut;
+use std::ptr::{null, null_mut};
 
 use super::*;
 use crate::boundary::{RARA_ERROR_INVALID, RARA_OK};
@@ -25,7 +25,7 @@ fn made(arrays: &RaraGaussianArrays) -> (RaraResult, Option<Gaussians>) {
 }
 
 fn default() -> RaraGaussianArrays {
-    let mut arrays = NOTHING;
+    let mut arrays = RaraGaussianArrays::BLANK;
     arrays.count = 7;
     // SAFETY: the struct has the room that the call is given.
     let filled = unsafe { rara_gaussian_arrays_default(&mut arrays, size_of_val(&arrays)) };

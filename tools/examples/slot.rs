@@ -1,5 +1,6 @@
 //! The part of the host that each frame in flight has to itself: commands, a target, and memory to read it back from.
 
+use half::f16;
 use rara::Result;
 use rara::ash::vk;
 
@@ -48,7 +49,7 @@ impl Host {
         let pixels = data.chunks_exact(self.pixel_size());
         let channel = |pixel: &[u8], i: usize| match self.pixel_size() {
             4 => f32::from(pixel[i]) / 255.0,
-            8 => half(u16::from_le_bytes([pixel[2 * i], pixel[2 * i + 1]])),
+            8 => f16::from_le_bytes([pixel[2 * i], pixel[2 * i + 1]]).to_f32(),
             _ => f32::from_le_bytes(pixel[4 * i..][..4].try_into().expect("four bytes")),
         };
         Ok(pixels
@@ -195,17 +196,5 @@ impl Host {
         let info = vk::DependencyInfo::default().image_memory_barriers(&barrier);
         // SAFETY: the slot's command buffer is recording outside rendering.
         unsafe { self.device.cmd_pipeline_barrier2(slot.cmd, &info) };
-    }
-}
-
-/// A half-precision number.
-fn half(bits: u16) -> f32 {
-    let sign = if bits >> 15 == 0 { 1.0 } else { -1.0 };
-    let (exponent, mantissa) = (i32::from(bits >> 10 & 31), f32::from(bits & 1023));
-    sign * match exponent {
-        0 => mantissa * 2.0_f32.powi(-24),
-        31 if mantissa == 0.0 => f32::INFINITY,
-        31 => f32::NAN,
-        _ => (1024.0 + mantissa) * 2.0_f32.powi(exponent - 25),
     }
 }

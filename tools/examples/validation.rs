@@ -1,14 +1,13 @@
 //! A host's instance, with the validation layer's checks of synchronisation and best practices, and the warnings of the
 //! latter that are allowed, each with its reason.
 
-use std::ffi::{CStr, c_void};
-use std::sync::Mutex;
+#[path = "messenger.rs"]
+mod messenger;
 
 use rara::Result;
 use rara::ash::{Entry, Instance, ext, vk};
 
-/// The layer's warnings and errors, without those that are allowed.
-pub(crate) type Messages = Mutex<Vec<String>>;
+pub(crate) use messenger::Messages;
 
 /// The object that sends the messages, with its functions.
 pub(crate) type Messenger = (ext::debug_utils::Instance, vk::DebugUtilsMessengerEXT);
@@ -70,17 +69,6 @@ pub(crate) unsafe fn instance(
         .enabled_layer_names(&layers)
         .enabled_extension_names(&extensions)
         .push_next(&mut checks);
-    let reports = vk::DebugUtilsMessengerCreateInfoEXT::default()
-        .message_severity(
-            vk::DebugUtilsMessageSeverityFlagsEXT::WARNING
-                | vk::DebugUtilsMessageSeverityFlagsEXT::ERROR,
-        )
-        .message_type(
-            vk::DebugUtilsMessageTypeFlagsEXT::VALIDATION
-                | vk::DebugUtilsMessageTypeFlagsEXT::PERFORMANCE,
-        )
-        .pfn_user_callback(Some(collect))
-        .user_data(std::ptr::from_ref(messages).cast_mut().cast());
     // SAFETY: everything pointed to outlives the calls; the caller vouches for `messages`.
     unsafe {
         let instance = entry
@@ -88,7 +76,7 @@ pub(crate) unsafe fn instance(
             .map_err(rara_gpu::failed("vkCreateInstance"))?;
         let loader = ext::debug_utils::Instance::new(entry, &instance);
         let messenger = loader
-            .create_debug_utils_messenger(&reports, None)
+            .create_debug_utils_messenger(&messenger::info(messages), None)
             .map_err(rara_gpu::failed("vkCreateDebugUtilsMessengerEXT"))?;
         Ok((instance, Some((loader, messenger))))
     }
@@ -111,23 +99,4 @@ fn checks(entry: &Entry) -> Vec<vk::ValidationFeatureEnableEXT> {
         _ => checks.push(vk::ValidationFeatureEnableEXT::BEST_PRACTICES),
     }
     checks
-}
-
-unsafe extern "system" fn collect(
-    _: vk::DebugUtilsMessageSeverityFlagsEXT,
-    _: vk::DebugUtilsMessageTypeFlagsEXT,
-    data: *const vk::DebugUtilsMessengerCallbackDataEXT<'_>,
-    user: *mut c_void,
-) -> vk::Bool32 {
-    // SAFETY: Vulkan passes a valid struct for the length of the call, and `user` is the host's messages.
-    let (text, messages): (&CStr, &Messages) = unsafe {
-        let text = (*data).message_as_c_str().unwrap_or(c"(no text)");
-        (text, &*user.cast())
-    };
-    let text = text.to_string_lossy();
-    if !ALLOWED.iter().any(|(id, _)| text.contains(id)) {
-        let mut messages = messages.lock().expect("no holder panics");
-        messages.push(text.into_owned());
-    }
-    vk::FALSE
 }

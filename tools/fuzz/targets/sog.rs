@@ -2,12 +2,14 @@
 //! `formats` gets to the readers of what is in it.
 #![no_main]
 
-use std::io::Cursor;
+use std::io::{Cursor, Write};
 use std::path::Path;
 
 use libfuzzer_sys::fuzz_target;
 use rara::scene::{Format, load_from};
 use rara_fuzz::{assert_readable, assert_sound, within};
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, ZipWriter};
 
 const SPLIT: &[u8] = b"SPLIT";
 
@@ -25,36 +27,13 @@ const NAMES: [&str; 8] = [
 
 /// A ZIP of files as they are, whose checksums are right.
 fn archive<'a>(files: impl Iterator<Item = (&'a str, &'a [u8])>) -> Vec<u8> {
-    let (mut bytes, mut directory, mut count) = (Vec::new(), Vec::new(), 0_u16);
+    let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
+    let stored = SimpleFileOptions::default().compression_method(CompressionMethod::Stored);
     for (name, content) in files {
-        let mut crc = flate2::Crc::new();
-        crc.update(content);
-        let size = (content.len() as u32).to_le_bytes();
-        // Flags, method, time and date are zero.
-        let mut about = [0; 8].to_vec();
-        about.extend(crc.sum().to_le_bytes());
-        about.extend([size, size].as_flattened());
-        about.extend((name.len() as u16).to_le_bytes());
-        about.extend([0; 2]);
-        let offset = (bytes.len() as u32).to_le_bytes();
-        bytes.extend(b"PK\x03\x04\x14\0");
-        bytes.extend_from_slice(&about);
-        bytes.extend_from_slice(name.as_bytes());
-        bytes.extend_from_slice(content);
-        directory.extend(b"PK\x01\x02\x14\0\x14\0");
-        directory.extend(about);
-        directory.extend([0; 10]);
-        directory.extend(offset);
-        directory.extend_from_slice(name.as_bytes());
-        count += 1;
+        archive.start_file(name, stored).expect("its name is no other's");
+        archive.write_all(content).expect("there is memory");
     }
-    let (size, offset) = (directory.len() as u32, bytes.len() as u32);
-    bytes.extend(directory);
-    bytes.extend(b"PK\x05\x06\0\0\0\0");
-    bytes.extend([count.to_le_bytes(); 2].as_flattened());
-    bytes.extend([size.to_le_bytes(), offset.to_le_bytes()].as_flattened());
-    bytes.extend([0; 2]);
-    bytes
+    archive.finish().expect("there is memory").into_inner()
 }
 
 /// The parts of the input.

@@ -1,7 +1,7 @@
 //! What the validation layer says, collected by a messenger of the host's own: wgpu's writes to the log alone.
 
-use std::ffi::{CStr, c_void};
-use std::sync::Mutex;
+#[path = "../../messenger.rs"]
+mod messenger;
 
 use rara::ash::{ext, vk};
 use wgpu::hal::api::Vulkan;
@@ -16,12 +16,10 @@ const ALLOWED: [(&str, &str); 1] = [(
      know; rara's modules do not come through wgpu, and none is of WGSL",
 )];
 
-type Said = Mutex<Vec<String>>;
-
 pub(crate) struct Messages {
     loader: ext::debug_utils::Instance,
     messenger: vk::DebugUtilsMessengerEXT,
-    said: Box<Said>,
+    said: Box<messenger::Messages>,
 }
 
 impl Messages {
@@ -38,21 +36,11 @@ impl Messages {
         if !layers.iter().any(is_layer) {
             return Err("the Khronos validation layer is not installed".into());
         }
-        let said = Box::new(Said::default());
-        let info = vk::DebugUtilsMessengerCreateInfoEXT::default()
-            .message_severity(
-                vk::DebugUtilsMessageSeverityFlagsEXT::WARNING
-                    | vk::DebugUtilsMessageSeverityFlagsEXT::ERROR,
-            )
-            .message_type(
-                vk::DebugUtilsMessageTypeFlagsEXT::VALIDATION
-                    | vk::DebugUtilsMessageTypeFlagsEXT::PERFORMANCE,
-            )
-            .pfn_user_callback(Some(collect))
-            .user_data(std::ptr::from_ref::<Said>(&said).cast_mut().cast());
+        let said = Box::new(messenger::Messages::default());
         let loader = ext::debug_utils::Instance::new(instance.entry(), instance.raw_instance());
         // SAFETY: wgpu has enabled the extension, and the messages outlive the messenger.
-        let messenger = unsafe { loader.create_debug_utils_messenger(&info, None) }?;
+        let messenger =
+            unsafe { loader.create_debug_utils_messenger(&messenger::info(&said), None) }?;
         Ok(Self {
             loader,
             messenger,
@@ -74,24 +62,4 @@ impl Drop for Messages {
                 .destroy_debug_utils_messenger(self.messenger, None)
         };
     }
-}
-
-unsafe extern "system" fn collect(
-    _: vk::DebugUtilsMessageSeverityFlagsEXT,
-    _: vk::DebugUtilsMessageTypeFlagsEXT,
-    data: *const vk::DebugUtilsMessengerCallbackDataEXT<'_>,
-    user: *mut c_void,
-) -> vk::Bool32 {
-    // SAFETY: Vulkan passes a valid struct for the length of the call, and `user` is the messages.
-    let (text, said): (&CStr, &Said) = unsafe {
-        let text = (*data).message_as_c_str().unwrap_or(c"(no text)");
-        (text, &*user.cast())
-    };
-    let text = text.to_string_lossy();
-    if !ALLOWED.iter().any(|(name, _)| text.contains(name)) {
-        said.lock()
-            .expect("no holder panics")
-            .push(text.into_owned());
-    }
-    vk::FALSE
 }

@@ -12,8 +12,6 @@ pub(crate) const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 const ROW: u32 = wgpu::COPY_BYTES_PER_ROW_ALIGNMENT;
 
 pub(crate) struct Target {
-    pub(crate) format: wgpu::TextureFormat,
-    pub(crate) size: (u32, u32),
     pub(crate) color: wgpu::Texture,
     pub(crate) depth: wgpu::Texture,
     pub(crate) color_view: wgpu::TextureView,
@@ -26,7 +24,11 @@ impl Target {
         let texture = |label, format| {
             host.device.create_texture(&wgpu::TextureDescriptor {
                 label: Some(label),
-                size: extent(size),
+                size: wgpu::Extent3d {
+                    width: size.0,
+                    height: size.1,
+                    depth_or_array_layers: 1,
+                },
                 mip_level_count: 1,
                 sample_count: 1,
                 dimension: wgpu::TextureDimension::D2,
@@ -38,10 +40,8 @@ impl Target {
         };
         let color = texture("picture", format);
         let depth = texture("depth", DEPTH);
-        let rows = u64::from(row(format, size)) * u64::from(size.1);
+        let rows = u64::from(row(&color)) * u64::from(size.1);
         Self {
-            format,
-            size,
             color_view: color.create_view(&wgpu::TextureViewDescriptor::default()),
             depth_view: depth.create_view(&wgpu::TextureViewDescriptor::default()),
             color,
@@ -106,8 +106,8 @@ impl Target {
 
     fn area(&self) -> vk::Rect2D {
         vk::Extent2D {
-            width: self.size.0,
-            height: self.size.1,
+            width: self.color.width(),
+            height: self.color.height(),
         }
         .into()
     }
@@ -120,11 +120,11 @@ impl Target {
                 buffer: &self.readback,
                 layout: wgpu::TexelCopyBufferLayout {
                     offset: 0,
-                    bytes_per_row: Some(row(self.format, self.size)),
+                    bytes_per_row: Some(row(&self.color)),
                     rows_per_image: None,
                 },
             },
-            extent(self.size),
+            self.color.size(),
         );
     }
 
@@ -134,8 +134,8 @@ impl Target {
             .map_async(wgpu::MapMode::Read, .., |mapped| mapped.expect("memory"));
         host.wait(None)?;
         let mapped = self.readback.get_mapped_range(..)?;
-        let row = row(self.format, self.size) as usize;
-        let used = (pixel_bytes(self.format) * self.size.0) as usize;
+        let row = row(&self.color) as usize;
+        let used = used(&self.color) as usize;
         let bytes = mapped.chunks_exact(row).flat_map(|row| &row[..used]);
         let bytes = bytes.copied().collect();
         drop(mapped);
@@ -144,19 +144,13 @@ impl Target {
     }
 }
 
-fn extent((width, height): (u32, u32)) -> wgpu::Extent3d {
-    wgpu::Extent3d {
-        width,
-        height,
-        depth_or_array_layers: 1,
-    }
+/// Bytes of a row of a picture.
+fn used(picture: &wgpu::Texture) -> u32 {
+    let bytes = picture.format().block_copy_size(None);
+    bytes.expect("a format of colours") * picture.width()
 }
 
-fn row(format: wgpu::TextureFormat, size: (u32, u32)) -> u32 {
-    (pixel_bytes(format) * size.0).next_multiple_of(ROW)
-}
-
-pub(crate) fn pixel_bytes(format: wgpu::TextureFormat) -> u32 {
-    let bytes = format.block_copy_size(None);
-    bytes.expect("a format of colours")
+/// The same as it is read back.
+fn row(picture: &wgpu::Texture) -> u32 {
+    used(picture).next_multiple_of(ROW)
 }

@@ -1,14 +1,12 @@
 //! `rara ablate`: the paper's second table.
 
 use clap::Args;
-use rara::Headless;
 use rara_lab::paper::ablation;
 
 use super::failure::Failure;
 use super::frame::ComparisonArgs;
 use super::framing;
 use super::output::{self, say};
-use super::process;
 use super::scenes::SceneArgs;
 
 /// Repeat the paper's ablation with a plane at infinity
@@ -38,8 +36,7 @@ impl Ablate {
         let scene = loaded.scene();
         let camera = framing::boxed_views(views, &scene)?.remove(0).camera;
 
-        process::make_drivers_folder();
-        let mut headless = Headless::new(&self.common.device.meant())?;
+        let mut headless = self.common.device.headless()?;
         headless.load_as(&scene, look.precision.sh)?;
         let rows = ablation::ablation(&mut headless, &scene, &camera, &look)?;
         headless.close()?;

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use clap::builder::PossibleValuesParser;
-use rara::{Clip, ClipOp, Headless};
+use rara::{Clip, ClipOp};
 use rara_lab::bench::{self, BenchOptions};
 use rara_lab::table::Table;
 
@@ -14,7 +14,6 @@ use super::demo::middle;
 use super::failure::Failure;
 use super::framing;
 use super::output::{self, ProgressLine, say};
-use super::process;
 use super::scenes::SceneArgs;
 use super::settings::{DeviceArgs, LookArgs};
 
@@ -89,8 +88,7 @@ impl Bench {
             only: self.only,
             shapes: self.shapes.then(|| middle(&scene, &camera)).transpose()?,
         };
-        process::make_drivers_folder();
-        let mut headless = Headless::new(&self.device.meant())?;
+        let mut headless = self.device.headless()?;
         let mut progress = ProgressLine::new("measuring");
         let report = bench::bench(
             &mut headless,

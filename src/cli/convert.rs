@@ -60,7 +60,7 @@ pub(super) struct Convert {
     scenes: SceneArgs,
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Default, Serialize)]
 struct ConvertJson {
     file: PathBuf,
     format: String,
@@ -100,16 +100,8 @@ impl Convert {
         let mut document = ConvertJson {
             file: self.output.clone(),
             format: format.to_string(),
-            gaussians: 0,
-            hidden: 0,
-            clipped: 0,
-            faint: 0,
-            lost: 0,
-            written: 0,
-            clamped: 0,
-            sh_degree: 0,
-            bytes: 0,
             notes: std::mem::take(&mut loaded.notes),
+            ..ConvertJson::default()
         };
         let mut taken = Vec::new();
         for layer in std::mem::take(&mut loaded.layers) {

@@ -3,13 +3,11 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use rara::Headless;
 use rara_lab::cases::sources;
 use rara_lab::paper::{self, PaperOptions};
 
 use super::failure::Failure;
 use super::output::{self, ProgressLine, say};
-use super::process;
 use super::settings::DeviceArgs;
 
 /// Gaussians of a generated scene.
@@ -53,8 +51,7 @@ impl Paper {
         // The series use generated scenes, which are at most as large as the largest scene that was given.
         let largest = sources.iter().map(|source| source.gaussians.len()).max();
         options.count = options.count.min(largest.unwrap_or(0).max(1));
-        process::make_drivers_folder();
-        let mut headless = Headless::new(&self.device.meant())?;
+        let mut headless = self.device.headless()?;
         let mut progress = ProgressLine::new("measuring");
         paper::run(&mut headless, sources, &options, &self.output, &mut |now| {
             let left = now

@@ -15,7 +15,7 @@ use super::json_kind;
 use super::region::Region;
 
 /// A layer that is to be read.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct LayerEntry {
     /// What it is called; its file's name without the ending where nothing else is said.
     pub(super) name: String,
@@ -138,10 +138,7 @@ impl LayerEntry {
         Self {
             name: stem(path),
             path: path.into(),
-            state: LayerState::default(),
-            antialiased: None,
-            clip: None,
-            selected: Vec::new(),
+            ..Self::default()
         }
     }
 

@@ -9,6 +9,7 @@ use super::scene_file::{LayerClip, LayerEntry, SceneDescription};
 use super::select;
 
 /// A layer that has been read.
+#[derive(Default)]
 pub(super) struct LoadedLayer {
     pub(super) name: String,
     pub(super) gaussians: Gaussians,
@@ -26,7 +27,7 @@ pub(super) struct LoadedLayer {
 }
 
 /// What the list of a scene's layers says of one, in so far as flags may say otherwise.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 #[cfg_attr(not(feature = "view"), allow(dead_code))]
 pub(super) struct ListedState {
     pub(super) visible: bool,
@@ -38,20 +39,18 @@ impl LoadedLayer {
     pub(super) fn new(name: String, state: LayerState, clip: Option<LayerClip>) -> Self {
         Self {
             name,
-            gaussians: Gaussians::default(),
-            format: None,
             state,
             listed: ListedState {
                 visible: state.visible,
                 clip: clip.clone(),
             },
             clip,
-            numbers: None,
-            trained: None,
+            ..Self::default()
         }
     }
 }
 
+#[derive(Default)]
 pub(super) struct SceneLayers {
     pub(super) layers: Vec<LoadedLayer>,
     /// Gaussians that had a field put right.
@@ -70,9 +69,7 @@ impl SceneLayers {
                 gaussians,
                 ..LoadedLayer::new(name.to_owned(), LayerState::default(), None)
             }],
-            repaired: 0,
-            dropped: 0,
-            notes: Vec::new(),
+            ..Self::default()
         }
     }
 

@@ -120,14 +120,15 @@ impl SceneArgs {
     pub(super) fn load_watched(&self, watch: Watch<'_>) -> Result<SceneLayers, Failure> {
         let mut loaded = load(self.entries()?, &self.antialiasing, watch)?;
         place::apply(&self.place, &mut loaded)?;
-        for name in &self.hide {
-            for layer in loaded.named("--hide", name)? {
-                layer.state = layer.state.visible(false);
-            }
-        }
-        for name in &self.unhide {
-            for layer in loaded.named("--unhide", name)? {
-                layer.state = layer.state.visible(true);
+        let flags = [
+            ("--hide", &self.hide, false),
+            ("--unhide", &self.unhide, true),
+        ];
+        for (flag, names, visible) in flags {
+            for name in names {
+                for layer in loaded.named(flag, name)? {
+                    layer.state = layer.state.visible(visible);
+                }
             }
         }
         // Last, as a clip may lie at a share of what is visible, where it is placed.
@@ -155,12 +156,7 @@ fn load(
     flags: &[String],
     watch: Watch<'_>,
 ) -> Result<SceneLayers, Failure> {
-    let mut all = SceneLayers {
-        layers: Vec::new(),
-        repaired: 0,
-        dropped: 0,
-        notes: Vec::new(),
-    };
+    let mut all = SceneLayers::default();
     let count = entries.len();
     let mut read = Vec::with_capacity(count);
     for (number, entry) in (1..).zip(entries) {

@@ -1,13 +1,13 @@
 //! The flags that say how a frame is drawn, and on which device.
 
 use clap::Args;
-use rara::{Decay, HeadlessDesc, Miss, Mode, PipelineCache, Raster, Settings, Show};
+use rara::{Decay, Headless, HeadlessDesc, Miss, Mode, PipelineCache, Raster, Settings, Show};
 
 use super::failure::Failure;
 use super::precision::PrecisionArgs;
 #[cfg(feature = "view")]
 use super::values::{flag, name, text};
-use super::{output, values};
+use super::{output, process, values};
 
 /// How to draw.
 #[derive(Debug, Args)]
@@ -133,6 +133,11 @@ impl LookArgs {
 }
 
 impl DeviceArgs {
+    pub(super) fn headless(&self) -> rara::Result<Headless> {
+        process::make_drivers_folder();
+        Headless::new(&self.meant())
+    }
+
     pub(super) fn meant(&self) -> HeadlessDesc {
         HeadlessDesc::default()
             .device(self.device.clone())

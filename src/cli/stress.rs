@@ -1,7 +1,6 @@
 //! `rara stress`: the stress suite's table on this device.
 
 use clap::Args;
-use rara::Headless;
 use rara_lab::stress::regimes;
 use rara_lab::stress::{self, FormRow, RegimeRow};
 use serde::Serialize;
@@ -49,8 +48,7 @@ impl Stress {
                 "no regime has such a name; run without names to see all".into(),
             ));
         }
-        super::process::make_drivers_folder();
-        let mut headless = Headless::new(&self.device.meant())?;
+        let mut headless = self.device.headless()?;
         if !self.json {
             say(format_args!(
                 "{:<52} {:>8} {:>8} {:>8} {:>8} {:>8} {:>6} {:>6}",

@@ -37,7 +37,7 @@ impl Set {
 }
 
 /// A buffer's accesses since it was last written.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 struct History {
     buffer: vk::Buffer,
     /// The accesses that wrote it last (several only when one pass wrote it in several ways).
@@ -54,10 +54,7 @@ impl History {
     fn new(buffer: vk::Buffer) -> Self {
         Self {
             buffer,
-            writers: Set::default(),
-            seen_by: Set::default(),
-            readers: Set::default(),
-            after_readers: Set::default(),
+            ..Self::default()
         }
     }
 }

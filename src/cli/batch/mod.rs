@@ -100,11 +100,7 @@ impl Batch {
         if self.report {
             return self.say_report(&planned, &share, &state);
         }
-        let done = done(&planned, &share, &state);
-        let stale = done
-            .iter()
-            .filter(|done| **done == PictureState::Otherwise)
-            .count();
+        let (done, stale) = done(&planned, &share, &state);
         for ((job, index), done) in share.iter().zip(done) {
             if done == PictureState::Not || (self.redraw && done == PictureState::Otherwise) {
                 let one = &mut planned[*job];
@@ -233,11 +229,7 @@ impl Batch {
         state: &State,
     ) -> Result<(), Failure> {
         let missing = missing(planned, share, state);
-        let done = done(planned, share, state);
-        let old = done
-            .iter()
-            .filter(|done| **done == PictureState::Otherwise)
-            .count();
+        let (_, old) = done(planned, share, state);
         let there = share.len() - missing.len();
         if self.json {
             output::json(&json!({
@@ -323,8 +315,12 @@ enum PictureState {
     Likewise,
 }
 
-/// What is done of each picture of a share.
-fn done(planned: &[JobPlan], share: &[(usize, usize)], state: &State) -> Vec<PictureState> {
+/// What is done of each picture of a share, and how many were drawn otherwise.
+fn done(
+    planned: &[JobPlan],
+    share: &[(usize, usize)],
+    state: &State,
+) -> (Vec<PictureState>, usize) {
     let driver = driver(planned, state);
     let of = |(job, index): &(usize, usize)| {
         let one = &planned[*job];
@@ -342,7 +338,10 @@ fn done(planned: &[JobPlan], share: &[(usize, usize)], state: &State) -> Vec<Pic
             Some(_) => PictureState::Otherwise,
         }
     };
-    share.iter().map(of).collect()
+    let done: Vec<_> = share.iter().map(of).collect();
+    let stale = done.iter().filter(|one| **one == PictureState::Otherwise);
+    let stale = stale.count();
+    (done, stale)
 }
 
 fn missing<'a>(planned: &'a [JobPlan], share: &[(usize, usize)], state: &State) -> Vec<&'a str> {

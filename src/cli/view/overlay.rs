@@ -18,7 +18,7 @@ const MESSAGE_TIME: Duration = Duration::from_secs(20);
 /// Pixels between panels, and between them and the window's edges, on an ordinary screen.
 const GAP: f64 = 8.0;
 
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Overlay {
     talks: bool,
     keys: bool,
@@ -61,12 +61,9 @@ impl Overlay {
     pub(super) fn new(text: bool) -> Self {
         Self {
             talks: text,
-            keys: false,
             numbers: text,
             hint: text,
-            hint_until: None,
-            message: None,
-            shown: None,
+            ..Self::default()
         }
     }
 

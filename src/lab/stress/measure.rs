@@ -25,7 +25,7 @@ const PICTURE_PSNR: f64 = 60.0;
 const PICTURE_SHARE: f64 = 1e-3;
 
 /// One form of the cut in one regime: the worst of all cases.
-#[derive(Debug, Clone, Copy, Serialize)]
+#[derive(Debug, Clone, Copy, Default, Serialize)]
 pub struct FormRow {
     /// `affine`, `beam`, `auto` or `rara`.
     pub form: &'static str,
@@ -44,7 +44,7 @@ pub struct FormRow {
     pub model: f64,
 }
 
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Default, Serialize)]
 pub struct RegimeRow {
     pub regime: &'static str,
     /// Splats drawn, in all cases together.
@@ -87,16 +87,11 @@ pub fn run(headless: &mut Headless, regime: &Regime, every: usize) -> Result<Reg
     let limit = regime.limit;
     let mut row = RegimeRow {
         regime: regime.name,
-        splats: 0,
-        alpha: 0.0,
-        missed: 0,
-        not_finite: 0,
-        miscounted: 0,
         forms: FORMS.map(|(form, ..)| FormRow::from_form(form)).to_vec(),
         target: limit.map_or(TARGET, |limit: Limit| limit.weight),
         least_psnr: limit.map_or(PICTURE_PSNR, |limit| limit.psnr),
         reason: limit.map(|limit| limit.reason),
-        ok: false,
+        ..RegimeRow::default()
     };
     let cases = (regime.cases)();
     let alone = cases.len() == 1;
@@ -273,12 +268,8 @@ impl FormRow {
     fn from_form(form: &'static str) -> Self {
         Self {
             form,
-            weight: 0.0,
-            l1: 0.0,
             psnr: f64::INFINITY,
-            max: 0.0,
-            share_over_2: 0.0,
-            model: 0.0,
+            ..Self::default()
         }
     }
 

@@ -26,27 +26,27 @@ vec3 product(vec3 a0, vec3 a1, vec3 b0, vec3 b1) {
     return vec3(dot(a0, b0), dot(a0, b1) + dot(a1, b0), dot(a1, b1));
 }
 
-// Computes Phi only where the column is not all on one side; pixels without alpha have no say in that.
-void phi_or_side(float z[ROWS], float alpha[ROWS], out float share[ROWS]) {
+// The shares of a column, whose pixels without alpha need none. False when all are whole. Less than Phi(-PHI_ONE) is nothing, so
+// that tiles' lists may leave out what would add no more.
+bool shares(float z[ROWS], float alpha[ROWS], out float share[ROWS]) {
     float low = 8.0;
-    float high = -8.0;
     for (uint row = 0u; row < ROWS; row++) {
         low = min(low, alpha[row] > 0.0 ? z[row] : 8.0);
-        high = max(high, alpha[row] > 0.0 ? z[row] : -8.0);
     }
-    bool whole = low > PHI_ONE;
+    bool open = low <= PHI_ONE;
     for (uint row = 0u; row < ROWS; row++) {
-        share[row] = whole ? 1.0 : 0.0;
+        share[row] = 1.0;
     }
-    if (low <= PHI_ONE && high >= -PHI_ONE) {
+    if (open) {
         for (uint row = 0u; row < ROWS; row++) {
-            share[row] = phi(z[row]);
+            share[row] = z[row] < -PHI_ONE ? 0.0 : phi(z[row]);
         }
     }
+    return open;
 }
 
 // The weights of a splat that carries its curve, a polynomial of degree two in the pixel.
-void carried_weights(vec3 linear, vec3 curvature, vec2 delta, float alpha[ROWS], out float weight[ROWS]) {
+bool carried_weights(vec3 linear, vec3 curvature, vec2 delta, float alpha[ROWS], out float weight[ROWS]) {
     float at = linear.x + delta.x * (linear.y + curvature.x * delta.x);
     float slope = linear.z + curvature.y * delta.x;
     float z[ROWS];
@@ -54,7 +54,7 @@ void carried_weights(vec3 linear, vec3 curvature, vec2 delta, float alpha[ROWS],
         float y = delta.y + float(row);
         z[row] = at + y * (slope + y * curvature.z);
     }
-    phi_or_side(z, alpha, weight);
+    return shares(z, alpha, weight);
 }
 
 // True when nothing of a column is visible. Outside reclipped frames the tiles' lists leave most such splats out.
@@ -71,7 +71,7 @@ bool is_carried_away(vec3 linear, vec3 curvature, vec2 delta) {
 
 // The weights of a record that is a curve, a polynomial of degree four in the splat's own coordinates: u is the column's,
 // v the first row's, and v changes by v_step a row.
-void curve_weights(Record record, float u, float v, float v_step, float alpha[ROWS], out float weight[ROWS]) {
+bool curve_weights(Record record, float u, float v, float v_step, float alpha[ROWS], out float weight[ROWS]) {
     vec4 linear = RECORD_AT(record, 0);
     vec4 bend = RECORD_AT(record, 1);
     vec4 twist = RECORD_AT(record, 2);
@@ -85,7 +85,7 @@ void curve_weights(Record record, float u, float v, float v_step, float alpha[RO
         float w = v + float(row) * v_step;
         z[row] = at + w * (slope + w * (second + w * (third + w * bend.w)));
     }
-    phi_or_side(z, alpha, weight);
+    return shares(z, alpha, weight);
 }
 
 // The values that all planes of a splat share in a column: the line of sight in its middle, by how much b2 and c change
@@ -136,27 +136,26 @@ void beam_zs(ColumnSight column, vec4 half_space, out float z[ROWS]) {
 
 // `exact` with the camera outside the splat: exact_weight of glsl/weight.glsl. `delta` and `pixel_centre` are the first
 // row's.
-void exact_weights(Record record, uint flags, vec2 delta, vec2 pixel_centre, float alpha[ROWS], out float weight[ROWS]) {
+bool exact_weights(Record record, uint flags, vec2 delta, vec2 pixel_centre, float alpha[ROWS], out float weight[ROWS]) {
     vec2 middle = vec2(0.0, 0.5 * float(ROWS - 1u));
     ColumnSight column = column_sight(record, delta + middle, pixel_centre + middle);
     float z[ROWS];
     uint count = flags >> CUT_COUNT_SHIFT;
     if (!SEVERAL || count == 1u) {
         beam_zs(column, RECORD_AT(record, CUT_HEADER), z);
-        phi_or_side(z, alpha, weight);
-        return;
+        return shares(z, alpha, weight);
     }
     if (count == 2u && RECORD_AT(record, CUT_HEADER).xyz == -plane_of(record_base(record), 1u).xyz) {
         // The planes bound a slab: both are thresholds in one variable.
         float other[ROWS];
         beam_zs(column, RECORD_AT(record, CUT_HEADER), z);
-        phi_or_side(z, alpha, weight);
+        shares(z, alpha, weight);
         beam_zs(column, plane_of(record_base(record), 1u), z);
-        phi_or_side(z, alpha, other);
+        shares(z, alpha, other);
         for (uint row = 0u; row < ROWS; row++) {
             weight[row] = combined(flags, max(0.0, weight[row] - (1.0 - other[row])));
         }
-        return;
+        return true;
     }
     // The least z of each row, and how many planes leave it open.
     float least[ROWS];
@@ -172,7 +171,7 @@ void exact_weights(Record record, uint flags, vec2 delta, vec2 pixel_centre, flo
             opens[row] += z[row] < PHI_ONE ? 1u : 0u;
         }
     }
-    phi_or_side(least, alpha, weight);
+    shares(least, alpha, weight);
     uint edges = 0u;
     for (uint row = 0u; row < ROWS; row++) {
         weight[row] = combined(flags, weight[row]);
@@ -187,6 +186,7 @@ void exact_weights(Record record, uint flags, vec2 delta, vec2 pixel_centre, flo
             weight[row] = row == edge ? share : weight[row];
         }
     }
+    return true;
 }
 
 // `exact` with the camera inside the splat: front_weight of glsl/weight.glsl. `delta` and `pixel_centre` are the first
@@ -274,8 +274,8 @@ void chord_weights(Record record, uint flags, vec2 delta, vec2 pixel_centre, out
     }
 }
 
-// The weight of each pixel of a column. `delta`, `uv` and `pixel_centre` are the first row's; v changes by `v_step` a row.
-void cut_weights(Record record, vec2 delta, vec2 uv, float v_step, vec2 pixel_centre, float alpha[ROWS],
+// The weight of each pixel of a column; false when all are whole. `delta`, `uv` and `pixel_centre` are the first row's; v changes by `v_step` a row.
+bool cut_weights(Record record, vec2 delta, vec2 uv, float v_step, vec2 pixel_centre, float alpha[ROWS],
                  out float weight[ROWS]) {
     uint flags = record_flags(record);
     if (COMBINED && (flags & CUT_COMBINED) != 0u) {
@@ -295,11 +295,11 @@ void cut_weights(Record record, vec2 delta, vec2 uv, float v_step, vec2 pixel_ce
             }
         }
     } else if (CLIP_MODE == MODE_EXACT && (flags & CUT_CURVE) != 0u) {
-        curve_weights(record, uv.x, uv.y, v_step, alpha, weight);
+        return curve_weights(record, uv.x, uv.y, v_step, alpha, weight);
     } else if (CLIP_MODE == MODE_EXACT && (flags & CUT_FRONT) != 0u) {
         front_weights(record, flags, delta, pixel_centre, weight);
     } else if (CLIP_MODE == MODE_EXACT) {
-        exact_weights(record, flags, delta, pixel_centre, alpha, weight);
+        return exact_weights(record, flags, delta, pixel_centre, alpha, weight);
     } else if ((flags & CUT_FRONT) == 0u) {
         chord_weights(record, flags, delta, pixel_centre, weight);
     } else {
@@ -308,6 +308,7 @@ void cut_weights(Record record, vec2 delta, vec2 uv, float v_step, vec2 pixel_ce
             weight[row] = chord_weight(record_base(record), flags, delta + below, pixel_centre + below);
         }
     }
+    return true;
 }
 
 #endif

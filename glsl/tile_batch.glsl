@@ -8,6 +8,8 @@
 #define BATCH gl_SubgroupSize
 #define IN_BATCH gl_SubgroupInvocationID
 #define OF(invocation, value) subgroupShuffle(value, invocation)
+// Code for whole splats alone needs fewer registers and masks than the code that weighs.
+const bool WHOLE_ALONE = CLIP_MODE >= MODE_RARA;
 
 // A vote: drivers for CPUs ask one invocation after the other, but shuffle with an instruction.
 bool all_of(bool agrees) {
@@ -26,22 +28,17 @@ void hand_over(Seen splat, Record record) {
     mine_record = record;
 }
 
-// True when the clip has nothing to do with any splat of the batch in this tile.
-bool is_whole_batch() {
-    return CLIP_MODE >= MODE_RARA && all_of(mine.linear.x == Z_WHOLE);
-}
-
-Seen taken_over(uint i, bool may_be_cut) {
+Seen taken_over(uint i) {
     Seen splat;
     splat.centre_conic = OF(i, mine.centre_conic);
     splat.conic_opacity = OF(i, mine.conic_opacity);
     splat.colour = OF(i, mine.colour);
     splat.linear = vec3(Z_WHOLE, 0.0, 0.0);
     splat.curvature = vec3(0.0);
-    if (may_be_cut && (CLIP_MODE >= MODE_RARA || RECLIPPED)) {
+    if (CLIP_MODE >= MODE_RARA || RECLIPPED) {
         splat.linear = OF(i, mine.linear);
     }
-    if (may_be_cut && CLIP_MODE == MODE_EXACT) {
+    if (CLIP_MODE == MODE_EXACT) {
         splat.curvature = OF(i, mine.curvature);
     }
     splat.far = DEPTH_FORM != DEPTH_NONE ? OF(i, mine.far) : 0.0;
@@ -68,6 +65,7 @@ bool all_done() {
 
 #define BATCH (gl_WorkGroupSize.x * gl_WorkGroupSize.y)
 #define IN_BATCH gl_LocalInvocationIndex
+const bool WHOLE_ALONE = false; // it would be the same code twice
 
 shared Seen batch[TILE_WIDTH * TILE_HEIGHT];
 shared uint at_work; // 1 when an invocation is not done
@@ -77,12 +75,7 @@ void hand_over(Seen splat, Record) {
     barrier();
 }
 
-// A vote would cost a barrier.
-bool is_whole_batch() {
-    return false;
-}
-
-Seen taken_over(uint i, bool may_be_cut) {
+Seen taken_over(uint i) {
     Seen splat = batch[i];
     if (CLIP_MODE < MODE_RARA && !RECLIPPED) {
         splat.linear = vec3(Z_WHOLE, 0.0, 0.0);

@@ -67,16 +67,10 @@ struct Seen {
 
 // Applies a cut splat's weights to its alphas, and returns them in `weight`.
 void weigh(Seen splat, Record record, vec2 delta, vec2 uv, inout float alpha[ROWS], out float weight[ROWS]) {
-    if (CLIP_MODE == MODE_EXACT && splat.linear.x > -Z_RANGE) {
-        carried_weights(splat.linear, splat.curvature, delta, alpha, weight);
-    } else {
-        cut_weights(record, delta, uv, splat.conic_opacity.x, pixel_centre, alpha, weight);
-    }
-    bool whole = true;
-    for (uint row = 0u; row < ROWS; row++) {
-        whole = whole && (weight[row] >= 1.0 || alpha[row] == 0.0);
-    }
-    if (!whole) {
+    bool open = CLIP_MODE == MODE_EXACT && splat.linear.x > -Z_RANGE
+        ? carried_weights(splat.linear, splat.curvature, delta, alpha, weight)
+        : cut_weights(record, delta, uv, splat.conic_opacity.x, pixel_centre, alpha, weight);
+    if (open) {
         for (uint row = 0u; row < ROWS; row++) {
             alpha[row] = decayed(alpha[row], weight[row]);
         }
@@ -220,23 +214,19 @@ void main() {
         Seen own = load(number, tile_middle, record);
         hand_over(own, record);
         uint count = min(end - first, BATCH);
-        // Most batches of a cut scene hold no cut splat, and without the code for weights the loop keeps more in registers.
-        if (is_whole_batch()) {
-            for (uint i = 0u; i < count; i++) {
-                Seen splat = taken_over(i, false);
-                if (!done) {
-                    blend(splat, record, pixel_centre - splat.centre_conic.xy, false);
-                }
-            }
-            continue;
-        }
         for (uint i = 0u; i < count; i++) {
             // All invocations run this, also those that are done: subgroup operations need every one.
-            Seen splat = taken_over(i, true);
-            record = record_taken_over(i, splat);
+            Seen splat = taken_over(i);
             vec2 delta = pixel_centre - splat.centre_conic.xy;
-            if (!done && !((RECLIPPED || CLIP_MODE >= MODE_RARA) && is_away(splat, delta))) {
-                blend(splat, record, delta, true);
+            if (WHOLE_ALONE && splat.linear.x == Z_WHOLE) {
+                if (!done) {
+                    blend(splat, record, delta, false);
+                }
+            } else {
+                record = record_taken_over(i, splat);
+                if (!done && !((RECLIPPED || CLIP_MODE >= MODE_RARA) && is_away(splat, delta))) {
+                    blend(splat, record, delta, true);
+                }
             }
         }
     }

@@ -135,7 +135,6 @@ fn hash(device: &Device, desc: &ComputeDesc<'_>) -> u64 {
     fnv::with(fnv::NOTHING, words.copied())
 }
 
-/// How many threads compile at once.
 fn threads() -> usize {
     #[cfg(any(test, feature = "lab"))]
     if crate::faults::are_here() {

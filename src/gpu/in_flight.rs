@@ -13,7 +13,6 @@ pub const FRAMES: usize = 2;
 /// Command buffers, fences and semaphores of the frames in flight.
 pub struct InFlight {
     slots: Vec<Slot>,
-    /// The slot of the next frame.
     next: usize,
     device: Device,
 }

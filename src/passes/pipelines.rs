@@ -49,7 +49,6 @@ impl Hash for Identity {
 
 /// Constants that follow from a plan.
 pub(crate) trait FromPlan {
-    /// The constants of a plan.
     fn from_plan(plan: &Plan) -> Self;
 }
 
@@ -93,7 +92,6 @@ impl<P: Interface> Pipeline<P> {
         Self::new(P::SHADER, P::Constants::from_plan(plan))
     }
 
-    /// Its identity.
     pub(super) fn key(&self) -> PipelineKey {
         self.key.clone()
     }
@@ -139,7 +137,6 @@ impl<P: Interface> Draw<P> {
         }
     }
 
-    /// Its identity.
     pub(super) fn key(&self) -> PipelineKey {
         self.key.clone()
     }
@@ -190,7 +187,6 @@ impl Pipelines {
         }
     }
 
-    /// True when a pipeline is there.
     pub(crate) fn has(&self, key: &PipelineKey) -> bool {
         self.compute.contains_key(key) || self.graphics.contains_key(key)
     }
@@ -221,7 +217,6 @@ impl Pipelines {
     }
 }
 
-/// A pipeline of either kind.
 enum AnyPipeline {
     Compute(ComputePipeline),
     Graphics(GraphicsPipeline),

@@ -27,7 +27,6 @@ use rara_scene::settings::{ExactForm, Raster, Settings, Show};
 /// A frame, decided but not recorded.
 #[derive(Debug, Clone)]
 pub(crate) struct Plan {
-    /// The part of the frame that has to be computed.
     pub(crate) work: Work,
     /// The stages and their variants that it takes.
     pub(crate) way: Way,
@@ -53,9 +52,7 @@ pub(crate) struct Way {
     pub(crate) raster: Raster,
     /// For what kind of device pipelines are chosen.
     pub(crate) shape: DeviceShape,
-    /// How the scene's spherical harmonics are stored.
     pub(crate) sh_format: ShFormat,
-    /// True when the scene has several layers.
     pub(crate) layered: bool,
     /// Passes of the sort that the scene's bounds ask for, at least one.
     pub(crate) sort_passes: u32,
@@ -67,7 +64,6 @@ pub(crate) struct Way {
     /// Colours, or a debug view.
     pub(crate) show: Show,
     pub(crate) colours: SplatColours,
-    /// How the pixels of the tiles' picture are stored.
     pub(crate) tile_pixels: TilePixels,
 }
 
@@ -205,17 +201,14 @@ impl Plan {
         Ok(plan)
     }
 
-    /// Gaussians in the scene.
     pub(crate) fn gaussians(&self) -> u64 {
         self.data.scene.gaussian_count.into()
     }
 
-    /// Blocks in the scene.
     pub(super) fn blocks(&self) -> u64 {
         self.data.scene.block_count.into()
     }
 
-    /// Pixels of the picture.
     pub(super) fn pixels(&self) -> u64 {
         self.size().map(|side| side as u64).iter().product()
     }
@@ -272,7 +265,6 @@ impl Plan {
         (self.way.sort_passes % 2) as usize
     }
 
-    /// True when splats become pixels by tiles.
     pub(crate) fn is_tiled(&self) -> bool {
         self.way.raster == Raster::Tiles
     }

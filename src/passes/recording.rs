@@ -138,7 +138,6 @@ impl<'a, 'r> Recording<'a, 'r> {
         }
     }
 
-    /// Copies a region of one buffer to another.
     pub(super) fn copy(&mut self, from: &Storage, to: &Storage, region: vk::BufferCopy) {
         if let Target::Commands(recorder, resources) = &mut self.target {
             recorder.copy(resources.buffer(from), resources.buffer(to), &[region]);

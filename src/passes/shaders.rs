@@ -29,7 +29,6 @@ pub(crate) trait Compute: Interface {
 
 /// The buffers of a program, by name: those of a device, or the declarations of a frame's.
 pub(crate) trait BufferSet<B: Copy> {
-    /// The program that has them.
     type Program: Interface<Buffers<B> = Self>;
     /// The buffers by binding.
     fn list(self) -> BufferList<B>;

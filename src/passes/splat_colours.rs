@@ -2,10 +2,8 @@
 
 use crate::types;
 
-/// The colours that splats get.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) enum SplatColours {
-    /// The scene's colours.
     #[default]
     Scene,
     /// The numbers of their Gaussians and layers.

@@ -28,7 +28,6 @@ impl TilePixels {
         }
     }
 
-    /// Bytes of a pixel.
     pub(crate) const fn bytes(self) -> u64 {
         match self {
             Self::Float => TargetFormat::Float.pixel_bytes(),

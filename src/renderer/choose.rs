@@ -8,11 +8,9 @@ use rara_scene::settings::{Raster, Settings};
 /// The properties of a host's targets that decide whether tiles can draw into them.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Targets {
-    /// Tiles of the picture.
     pub(super) tiles: u32,
     /// True when splats are tested against a depth that tiles cannot read.
     pub(super) hidden: bool,
-    /// True when a pixel has several samples.
     pub(super) multisampled: bool,
     /// True when colours become linear light once splats are blended.
     pub(super) linear: bool,
@@ -78,7 +76,6 @@ const HIDDEN: &str = "tiles need the host's depth before its scope (DepthDesc::r
 const TILE_BYTES: u64 = (limits::TILE_WIDTH * limits::TILE_HEIGHT) as u64 * 16;
 const MOST_PICTURE: u64 = 1 << 30;
 
-/// The most tiles that a picture may have.
 pub(super) const MOST_TILES: u32 = (MOST_PICTURE / TILE_BYTES) as u32;
 
 /// Runs of the sort and of the bin: on CPU drivers at least as many as all cores have lanes, but few, since each has counts of

@@ -20,7 +20,6 @@ pub(super) struct Decision {
     pub(super) depth_map: Option<DepthMap>,
     /// World units in one of the scene's.
     pub(super) unit: f64,
-    /// How it is submitted.
     pub(super) submission: Submission,
     /// True when nothing is drawn of it without room for its pairs of tile and splat.
     pub(super) redrawn: bool,
@@ -79,7 +78,6 @@ impl RecordedFrame {
 #[derive(Debug)]
 pub(super) struct FramesInFlight {
     slots: Box<[RecordedFrame]>,
-    /// Frames prepared so far.
     prepared: u64,
 }
 
@@ -101,13 +99,11 @@ impl FramesInFlight {
         slot
     }
 
-    /// The frame that was prepared last.
     pub(super) fn newest(&self) -> Option<&RecordedFrame> {
         let at = self.slot(self.prepared.checked_sub(1)?);
         Some(&self.slots[at])
     }
 
-    /// As [`newest`](Self::newest).
     pub(super) fn newest_mut(&mut self) -> Option<&mut RecordedFrame> {
         let at = self.slot(self.prepared.checked_sub(1)?);
         Some(&mut self.slots[at])
@@ -139,7 +135,6 @@ impl FramesInFlight {
         &self.slots
     }
 
-    /// Frames prepared so far.
     pub(super) fn prepared(&self) -> u64 {
         self.prepared
     }

@@ -121,7 +121,6 @@ impl FrameLimits {
     }
 }
 
-/// The most surfaces that a clip may have.
 const MOST_SURFACES: u32 = 1 << 16;
 
 /// Those of some numbers, each once, that are not 0 and not beyond the most.

@@ -16,14 +16,11 @@ pub(super) struct WorkingMemory {
     buffers: Option<Arc<Buffers>>,
     /// Buffers that frames in flight may still use, with the number of frames prepared when they were replaced.
     retired: Vec<(u64, Arc<Buffers>)>,
-    /// The room for pairs of tile and splat.
     pub(super) pairs: PairRoom,
-    /// The pairs that were estimated last.
     pub(super) estimate: PairEstimate,
 }
 
 impl WorkingMemory {
-    /// True when a plan fits into the present buffers.
     pub(super) fn fits(&self, plan: &Plan) -> bool {
         let buffers = self.buffers.as_ref();
         buffers.is_some_and(|buffers| buffers.fit(&plan.sizes()))
@@ -135,7 +132,6 @@ impl WorkingMemory {
         Ok(())
     }
 
-    /// Bytes of all buffers.
     pub(super) fn bytes(&self) -> u64 {
         let retired = self.retired.iter().map(|(_, buffers)| buffers);
         let mut all: Vec<_> = retired

@@ -1,6 +1,5 @@
 //! How a frame is submitted, and its outcome: who submits it states the one before and reads the other afterwards.
 
-/// How a frame is submitted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Submission {
     /// It is submitted while earlier ones are unfinished. If its tiles' lists have no room, it is drawn as quads: the same

@@ -26,7 +26,6 @@ pub(super) struct PairRoom {
     growth: Growth,
 }
 
-/// Whether the room grows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Growth {
     /// It grows with what frames need.
@@ -177,7 +176,6 @@ impl PairRoom {
         }
     }
 
-    /// Pairs that there is room for.
     pub(super) fn room(&self) -> u32 {
         self.room
     }

@@ -48,7 +48,6 @@ use rara_scene::settings::{Raster, Settings, Show};
 pub struct Picker {
     renderer: Renderer,
     slots: Box<[Slot]>,
-    /// Requests recorded so far.
     recorded: u64,
 }
 

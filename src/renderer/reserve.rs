@@ -226,7 +226,6 @@ fn tiles((width, height): (u32, u32)) -> u32 {
 }
 
 impl FramesInFlight {
-    /// Bytes of the slots' buffers.
     fn bytes(&self) -> u64 {
         self.slots().iter().map(|slot| slot.counts.size()).sum()
     }

@@ -6,7 +6,6 @@ use crate::passes::{Pipelines, Plan, Targets};
 use rara_base::error::Result;
 use rara_gpu::{Bindings, Device};
 
-/// The pipelines for each of the [`Bindings`].
 type ByBindings = [Option<Arc<Pipelines>>; 3];
 
 /// A renderer's view of the compiled pipelines.

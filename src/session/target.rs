@@ -197,7 +197,6 @@ fn bits(background: Option<[f32; 3]>) -> Option<[u32; 3]> {
     background.map(|rgb| rgb.map(f32::to_bits))
 }
 
-/// The Vulkan format of a picture's format.
 pub(super) const fn vulkan_format(format: TargetFormat) -> vk::Format {
     match format {
         TargetFormat::Unorm8 => vk::Format::R8G8B8A8_UNORM,

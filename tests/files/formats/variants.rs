@@ -305,6 +305,44 @@ fn gltf_of_integers_and_a_matrix() {
         error.to_string().contains("a scene that there is not"),
         "{error}"
     );
+    let required = |name: &str| {
+        document.replace(
+            r#""scene":0"#,
+            &format!(r#""scene":0,"extensionsRequired":["{name}"]"#),
+        )
+    };
+    let error = read(&required("EXT_something_unknown"))
+        .unwrap_err()
+        .to_string();
+    assert!(
+        error.contains("requires the extension EXT_something_unknown"),
+        "{error}"
+    );
+    read(&required("KHR_mesh_quantization")).unwrap();
+    let moving = document.replace(
+        r#""scene":0"#,
+        r#""scene":0,"animations":[{"channels":[],"samplers":[]}]"#,
+    );
+    let notes = read(&moving).unwrap().report.to_string();
+    assert!(
+        notes.contains("left out 1 animation of the glTF"),
+        "{notes}"
+    );
+    // Instances are drawn each at its own place within the node: here at the numbers of the scales, in the node's own axes.
+    let instances = r#""extensions":{"EXT_mesh_gpu_instancing":{"attributes":{"TRANSLATION":2}}}"#;
+    let found = read(&document.replace(matrix, &format!("{matrix},{instances}")))
+        .unwrap()
+        .gaussians;
+    // (2, 4, 7) becomes (-8 + 10, 4, 14).
+    near(&found.positions()[0].to_array(), &[-2.0, -4.0, 14.0], 1e-5);
+    let flat = instances.replace("TRANSLATION", "SCALE");
+    let error = read(&document.replace(matrix, &flat))
+        .unwrap_err()
+        .to_string();
+    assert!(
+        error.contains("has an instance that scales unlike"),
+        "{error}"
+    );
     // What a node moves out of what single precision holds is dropped, and said.
     let far = document.replace(matrix, r#""translation":[1e39,0,0]"#);
     let found = read(&far).unwrap();

@@ -75,8 +75,8 @@ impl Accessor {
         }
         if index(accessor, "count") != Some(count) {
             return Err(wrong(&format!(
-                "is not of {} as the positions are",
-                counted(count, "Gaussian")
+                "is not of {} as the others are",
+                counted(count, "element")
             )));
         }
         let kind = match index(accessor, "componentType") {

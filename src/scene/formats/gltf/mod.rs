@@ -75,7 +75,8 @@ pub(super) fn read_document(
     let mut whole = FormatOutput::default();
     let (mut found, mut others) = (0_u64, 0_u64);
     let mut meshes = BTreeMap::new();
-    for (number, placement) in nodes::meshes(document)? {
+    check_extensions(document)?;
+    for (number, placement) in nodes::meshes(document, &mut buffers)? {
         let mesh = match meshes.entry(number) {
             Entry::Occupied(known) => known.into_mut(),
             Entry::Vacant(unknown) => unknown.insert(Mesh::from_json(document, number)?),
@@ -107,12 +108,49 @@ pub(super) fn read_document(
              with it"
         )));
     }
+    let animations = list(document, "animations").len();
+    if animations > 0 {
+        whole.report.note(format!(
+            "left out {} of the glTF: it is drawn as its nodes stand",
+            counted(animations, "animation")
+        ));
+    }
     if others > 0 {
         whole.report.note(format!(
             "left out {others} primitive(s) of the glTF that are no Gaussians"
         ));
     }
     Ok(whole)
+}
+
+/// Refuses a document that requires an extension which may change its Gaussians in a way that is not known (glTF 2.0, 3.12).
+fn check_extensions(document: &Value) -> Result<(), Failure> {
+    // These say how something looks that is no Gaussian, or let accessors have types that are read anyway. What compresses
+    // is refused where it is met, since it may concern other meshes.
+    const HARMLESS: [&str; 4] = [
+        "KHR_materials_",
+        "KHR_texture_",
+        "KHR_lights_",
+        "KHR_mesh_quantization",
+    ];
+    let known = |name: &str| {
+        name == EXTENSION
+            || name == nodes::INSTANCES
+            || name.contains("compression")
+            || HARMLESS.iter().any(|known| name.starts_with(known))
+    };
+    let required = list(document, "extensionsRequired");
+    match required
+        .iter()
+        .filter_map(Value::as_str)
+        .find(|name| !known(name))
+    {
+        Some(name) => Err(Failure::Format(format!(
+            "the glTF requires the extension {}, which is not read; export the scene without it",
+            shortened(name)
+        ))),
+        None => Ok(()),
+    }
 }
 
 /// The primitives of a mesh that are Gaussians, with what the extension says, and how many are not.
@@ -203,13 +241,9 @@ fn read_primitive(
             (found != usual).then(|| format!("{what} \"{}\" {is_drawn}", shortened(found)))
         });
     let attributes = primitive.get("attributes");
-    let count = attribute(attributes, "POSITION")
-        .and_then(|number| list(document, "accessors").get(number))
-        .and_then(|accessor| index(accessor, "count"))
-        .ok_or_else(|| {
-            "the Gaussians have no attribute POSITION with a count; export the scene again"
-                .to_owned()
-        })?;
+    let count = count_of(document, attributes, "POSITION").ok_or_else(|| {
+        "the Gaussians have no attribute POSITION with a count; export the scene again".to_owned()
+    })?;
     let mut get = |name: &str, parts: usize| -> Result<Option<Accessor>, Failure> {
         match attribute(attributes, name) {
             Some(number) => {
@@ -281,4 +315,10 @@ fn read_primitive(
 /// The accessor of an attribute.
 fn attribute(attributes: Option<&Value>, name: &str) -> Option<usize> {
     usize::try_from(index(attributes?, name)?).ok()
+}
+
+/// The elements that an attribute's accessor says to have.
+fn count_of(document: &Value, attributes: Option<&Value>, name: &str) -> Option<u64> {
+    let accessor = list(document, "accessors").get(attribute(attributes, name)?)?;
+    index(accessor, "count")
 }

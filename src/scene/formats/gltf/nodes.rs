@@ -4,14 +4,22 @@ use glam::{DMat3, DQuat, DVec3};
 use serde_json::Value;
 
 use super::super::Failure;
-use super::list;
+use super::accessor::Accessor;
+use super::buffers::Buffers;
+use super::{attribute, count_of, list};
 use crate::placement::Placement;
+
+/// The extension of a node that draws its mesh several times, each time with a transform of its own.
+pub(super) const INSTANCES: &str = "EXT_mesh_gpu_instancing";
 
 /// How far the sides of a node's axes may be from each other, or from a right angle, to be one scale and a turn.
 const EVEN: f64 = 1e-4;
 
 /// The number of each mesh that the scene draws, with its placement in the scene.
-pub(super) fn meshes(document: &Value) -> Result<Vec<(usize, Placement)>, Failure> {
+pub(super) fn meshes(
+    document: &Value,
+    buffers: &mut Buffers<'_>,
+) -> Result<Vec<(usize, Placement)>, Failure> {
     let nodes = list(document, "nodes");
     let scenes = list(document, "scenes");
     if scenes.is_empty() {
@@ -47,7 +55,14 @@ pub(super) fn meshes(document: &Value) -> Result<Vec<(usize, Placement)>, Failur
         let own = joined(&parent, &own)?;
         if let Some(mesh) = node.get("mesh") {
             let mesh = number(mesh).ok_or_else(|| wrong("has a mesh that is no number"))?;
-            found.push((mesh, own));
+            match node.get("extensions").and_then(|all| all.get(INSTANCES)) {
+                Some(instances) => {
+                    for instance in placements(document, buffers, instances, &wrong)? {
+                        found.push((mesh, joined(&own, &instance)?));
+                    }
+                }
+                None => found.push((mesh, own)),
+            }
         }
         open.extend(
             indices(node, "children")?
@@ -98,18 +113,64 @@ fn numbers<const N: usize>(node: &Value, key: &str) -> Result<Option<[f64; N]>, 
     all.map(Some).ok_or(wrong)
 }
 
+/// The placement of each instance of a node; `wrong` says what is wrong with the node.
+fn placements(
+    document: &Value,
+    buffers: &mut Buffers<'_>,
+    instances: &Value,
+    wrong: &dyn Fn(&str) -> Failure,
+) -> Result<Vec<Placement>, Failure> {
+    let attributes = instances.get("attributes");
+    const PARTS: [(&str, usize); 3] = [("TRANSLATION", 3), ("ROTATION", 4), ("SCALE", 3)];
+    let count = PARTS
+        .iter()
+        .find_map(|(name, _)| count_of(document, attributes, name))
+        .ok_or_else(|| wrong("has instances without a count"))?;
+    let mut parts = Vec::new();
+    for (name, size) in PARTS {
+        parts.push(match attribute(attributes, name) {
+            Some(at) => Some(Accessor::from_json(
+                document, buffers, at, name, count, size,
+            )?),
+            None => None,
+        });
+    }
+    let made = |instance: u64| {
+        let value = |part: usize, at: usize, otherwise: f64| match &parts[part] {
+            Some(accessor) => accessor.at(instance, at),
+            None => otherwise,
+        };
+        placement_of(
+            [0, 1, 2].map(|axis| value(0, axis, 0.0)),
+            [0, 1, 2, 3].map(|at| value(1, at, if at == 3 { 1.0 } else { 0.0 })),
+            [0, 1, 2].map(|axis| value(2, axis, 1.0)),
+        )
+    };
+    let all: Result<_, _> = (0..count).map(made).collect();
+    all.map_err(|what| wrong(&format!("has an instance that {what}")))
+}
+
+const UNEVEN: &str = "scales unlike in different directions or shears, which Gaussians cannot follow: apply its transform";
+const MIRRORED: &str = "mirrors or is scaled to nothing, which is not read: apply its transform";
+
+/// The placement by a translation, a rotation and scales, or what is wrong with them.
+fn placement_of(
+    position: [f64; 3],
+    rotation: [f64; 4],
+    [x, y, z]: [f64; 3],
+) -> Result<Placement, &'static str> {
+    if [x, y, z].iter().any(|scale| *scale <= 0.0) {
+        return Err(MIRRORED);
+    }
+    if (x - y).abs() > EVEN * x || (x - z).abs() > EVEN * x {
+        return Err(UNEVEN);
+    }
+    Placement::new(DVec3::from(position), DQuat::from_array(rotation), x)
+        .map_err(|_| "has a rotation of length 0, or numbers beyond all that is sensible")
+}
+
 /// A node's own transform, or what is wrong with it.
 fn placement(node: &Value) -> Result<Placement, &'static str> {
-    const UNEVEN: &str = "scales unlike in different directions or shears, which Gaussians cannot follow: apply its transform";
-    const MIRRORED: &str =
-        "mirrors or is scaled to nothing, which is not read: apply its transform";
-    let made = |position: DVec3, rotation: DQuat, scale: f64| {
-        if scale <= 0.0 {
-            return Err(MIRRORED);
-        }
-        let made = Placement::new(position, rotation, scale);
-        made.map_err(|_| "has a rotation of length 0, or numbers beyond all that is sensible")
-    };
     if let Some(matrix) = numbers::<16>(node, "matrix")? {
         let axes = DMat3::from_cols_array(&[
             matrix[0], matrix[1], matrix[2], matrix[4], matrix[5], matrix[6], matrix[8], matrix[9],
@@ -120,21 +181,21 @@ fn placement(node: &Value) -> Result<Placement, &'static str> {
         if scale > 0.0 && !(turn * turn.transpose()).abs_diff_eq(DMat3::IDENTITY, EVEN) {
             return Err(UNEVEN);
         }
-        let position = DVec3::new(matrix[12], matrix[13], matrix[14]);
         let rotation = match scale > 0.0 {
             true => DQuat::from_mat3(&turn),
             false => DQuat::IDENTITY,
         };
-        return made(position, rotation, scale);
+        return placement_of(
+            [matrix[12], matrix[13], matrix[14]],
+            rotation.to_array(),
+            [scale; 3],
+        );
     }
     let position = numbers::<3>(node, "translation")?.unwrap_or_default();
     let rotation = numbers::<4>(node, "rotation")?.unwrap_or([0.0, 0.0, 0.0, 1.0]);
-    let [x, y, z] = numbers::<3>(node, "scale")?.unwrap_or([1.0; 3]);
-    if [x, y, z].iter().any(|scale| *scale <= 0.0) {
-        return Err(MIRRORED);
-    }
-    if (x - y).abs() > EVEN * x || (x - z).abs() > EVEN * x {
-        return Err(UNEVEN);
-    }
-    made(DVec3::from(position), DQuat::from_array(rotation), x)
+    placement_of(
+        position,
+        rotation,
+        numbers::<3>(node, "scale")?.unwrap_or([1.0; 3]),
+    )
 }

@@ -95,12 +95,12 @@ impl ScenePlace {
         &mut self,
         profile: &Profile,
         device: HeadlessDesc,
-        scene: &Scene<'_>,
+        scene: Scene<'_>,
         sh: ShFormat,
     ) -> std::result::Result<Session, Failure> {
         match self.session.take() {
             Some(mut session) => {
-                session.set_layer_clips(scene)?;
+                session.set_layer_clips(&scene)?;
                 Ok(session)
             }
             None => profile.open(device, scene, sh),

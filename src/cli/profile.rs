@@ -68,7 +68,7 @@ impl Profile {
     pub(super) fn open(
         &self,
         device: HeadlessDesc,
-        scene: &Scene<'_>,
+        scene: Scene<'_>,
         sh: ShFormat,
     ) -> Result<Session, Failure> {
         let device = device.trace(self.trace.clone()).statistics(self.statistics);

@@ -20,7 +20,7 @@ use super::pictures::{
     self, Destination, Order, PictureArgs, PictureJob, Pixels, Plan, RenderedPicture,
 };
 use super::profile::{Profile, ProfileArgs};
-use super::report::{Answer, FrameRecord, RenderReport};
+use super::report::{Answer, FrameRecord, RenderReport, SceneReport};
 use super::save_camera::SaveCameraArgs;
 use super::scenes::SceneArgs;
 use super::section::{Section, SectionArgs, Sections};
@@ -286,7 +286,14 @@ impl Render {
         let pixels = panorama.map_or(0, Panorama::kept_pixels);
         memory::check_pictures(sizes.clone(), pixels)?;
         let size = destination.size(sizes)?;
-        let mut session = place.open(profile, device.meant(), &scene, sh)?;
+        let scene_report = SceneReport::new(&loaded);
+        // Later commands need the Gaussians again, and slices are made of them.
+        let scene = match destination.order().is_none() && !self.slice.needs_gaussians() {
+            true => loaded.take_scene(),
+            false => loaded.scene(),
+        };
+        let mut session = place.open(profile, device.meant(), scene, sh)?;
+        let scene = loaded.scene();
         if let Some(order) = destination.order() {
             order.opened(session.headless.driver());
         }
@@ -345,7 +352,7 @@ impl Render {
         }
 
         let mode = name(settings.mode);
-        let report = RenderReport::new(&session, &loaded, size, mode, &written.pictures);
+        let report = RenderReport::new(&session, scene_report, size, mode, &written.pictures);
         let (faces, pictures) = (written.faces, written.pictures);
         let report = match panorama {
             Some(_) => report.with_frames(faces),

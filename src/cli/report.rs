@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use rara::camera_files::SavedCamera;
 use rara::gpu::{DeviceShape, NamedBytes};
-use rara::{Counts, FrameStats, Plane};
+use rara::{Counts, FrameStats, Layer, Plane};
 use serde::Serialize;
 
 use super::combine::{Combine, FrameSummary, combine};
@@ -108,7 +108,7 @@ struct ShapeReport {
 }
 
 #[derive(Debug, Serialize)]
-struct SceneReport {
+pub(super) struct SceneReport {
     gaussians: usize,
     sh_degree: u32,
     repaired: u64,
@@ -133,6 +133,24 @@ struct Memory {
     peak_rss_bytes: u64,
     /// The parts of `device_bytes` by purpose, the largest first.
     purposes: Vec<NamedBytes>,
+}
+
+impl SceneReport {
+    pub(super) fn new(loaded: &SceneLayers) -> Self {
+        let scene = loaded.scene();
+        let layers = scene.layers().iter();
+        let report = |layer: &Layer<'_>| LayerReport {
+            name: layer.name().to_owned(),
+            gaussians: layer.gaussians().len(),
+        };
+        Self {
+            gaussians: scene.gaussians(),
+            sh_degree: scene.sh_degree(),
+            repaired: loaded.repaired,
+            dropped: loaded.dropped,
+            layers: layers.map(report).collect(),
+        }
+    }
 }
 
 impl RenderReport {
@@ -189,7 +207,7 @@ impl RenderReport {
     /// A report whose top level holds the medians of what each picture took.
     pub(super) fn new(
         session: &Session,
-        loaded: &SceneLayers,
+        scene: SceneReport,
         size: (u32, u32),
         mode: String,
         pictures: &[FrameRecord],
@@ -197,7 +215,7 @@ impl RenderReport {
         let headless = &session.headless;
         let device = headless.device();
         let scene_bytes = headless.scene_bytes();
-        let scene = loaded.scene();
+        let gaussians = scene.gaussians;
         let measured = FrameSummary::all(pictures.iter().map(|picture| &picture.measured));
         let faces = pictures.first().map_or(1, |picture| picture.faces);
         let a_frame = measured.stats.wall_ms / faces as f64;
@@ -208,20 +226,7 @@ impl RenderReport {
                 shape: device.shape(),
                 reason: device.shape_reason(),
             },
-            scene: SceneReport {
-                gaussians: scene.gaussians(),
-                sh_degree: scene.sh_degree(),
-                repaired: loaded.repaired,
-                dropped: loaded.dropped,
-                layers: scene
-                    .layers()
-                    .iter()
-                    .map(|layer| LayerReport {
-                        name: layer.name().to_owned(),
-                        gaussians: layer.gaussians().len(),
-                    })
-                    .collect(),
-            },
+            scene,
             size: [size.0, size.1],
             mode,
             camera: pictures
@@ -235,7 +240,7 @@ impl RenderReport {
             memory: Memory {
                 device_bytes: headless.device_bytes(),
                 scene_bytes,
-                scene_bytes_per_gaussian: scene_bytes as f64 / scene.gaussians().max(1) as f64,
+                scene_bytes_per_gaussian: scene_bytes as f64 / gaussians.max(1) as f64,
                 peak_rss_bytes: peak_rss_bytes(),
                 purposes: device.memory_by_name(),
             },

@@ -48,6 +48,18 @@ impl LoadedLayer {
             ..Self::default()
         }
     }
+
+    /// A layer of its Gaussians as it is shown, its own clip cut by a section.
+    fn shown<'a>(&'a self, made: Layer<'a>, section: &[Expression]) -> Layer<'a> {
+        let mut made = made.with(self.state);
+        if let Some(clip) = &self.clip {
+            made = made.clipped(clip.cut_by(section).clip());
+        }
+        if let Some((first, numbers)) = &self.numbers {
+            made = made.numbered(*first, numbers);
+        }
+        made
+    }
 }
 
 #[derive(Default)]
@@ -85,15 +97,17 @@ impl SceneLayers {
 
     /// The scene of the layers, of whose own clips each is cut by a section.
     pub(super) fn scene_cut_by(&self, section: &[Expression]) -> rara::Scene<'_> {
-        let layers = self.layers.iter().map(|layer| {
-            let mut made = Layer::new(&layer.name, &layer.gaussians).with(layer.state);
-            if let Some(clip) = &layer.clip {
-                made = made.clipped(clip.cut_by(section).clip());
-            }
-            if let Some((first, numbers)) = &layer.numbers {
-                made = made.numbered(*first, numbers);
-            }
-            made
+        let layers = self.layers.iter();
+        let shown =
+            layers.map(|layer| layer.shown(Layer::new(&layer.name, &layer.gaussians), section));
+        shown.collect()
+    }
+
+    /// The scene of the layers, which have no Gaussians themselves from then on: its upload frees them.
+    pub(super) fn take_scene(&mut self) -> rara::Scene<'_> {
+        let layers = self.layers.iter_mut().map(|layer| {
+            let gaussians = std::mem::take(&mut layer.gaussians);
+            layer.shown(Layer::owned(&layer.name, gaussians), &[])
         });
         layers.collect()
     }

@@ -42,7 +42,11 @@ impl Repeat {
 const PATIENCE: Duration = Duration::from_secs(2);
 
 impl Session {
-    pub(super) fn open(desc: &HeadlessDesc, scene: &Scene<'_>, sh: ShFormat) -> Result<Self> {
+    pub(super) fn open<'a>(
+        desc: &HeadlessDesc,
+        scene: impl Into<Scene<'a>>,
+        sh: ShFormat,
+    ) -> Result<Self> {
         process::make_drivers_folder();
         let mut headless = Headless::new(desc)?;
         headless.load_as(scene, sh)?;

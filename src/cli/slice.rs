@@ -64,6 +64,11 @@ impl SliceArgs {
         )))
     }
 
+    /// True when something is made of the scene's Gaussians once the scene is on the device.
+    pub(super) fn needs_gaussians(&self) -> bool {
+        self.slice || self.cues().is_some()
+    }
+
     fn cues(&self) -> Option<Cues> {
         let mut cues = Cues::default();
         let cue = |width| move |colour| Cue { colour, width };

@@ -18,7 +18,7 @@ use super::memory;
 use super::pictures::{self, Destination, Order, PictureArgs, Pixels, Plan, RenderedPicture};
 use super::profile::{Profile, ProfileArgs};
 use super::region::Region;
-use super::report::{FrameRecord, RenderReport};
+use super::report::{FrameRecord, RenderReport, SceneReport};
 use super::save_camera::SaveCameraArgs;
 use super::scenes::SceneArgs;
 use super::values::{self, name};
@@ -177,7 +177,12 @@ impl Sweep {
         };
         let size = (camera.width, camera.height);
         memory::check_picture(size, 0)?;
-        let mut session = place.open(profile, device.meant(), &scene, sh)?;
+        let scene_report = SceneReport::new(&loaded);
+        let scene = match destination.order() {
+            Some(_) => loaded.scene(), // later commands need the Gaussians again
+            None => loaded.take_scene(),
+        };
+        let mut session = place.open(profile, device.meant(), scene, sh)?;
         if let Some(order) = destination.order() {
             order.opened(session.headless.driver());
         }
@@ -217,7 +222,7 @@ impl Sweep {
         }
 
         let mode = name(settings.mode);
-        let report = RenderReport::new(&session, &loaded, size, mode, &written.pictures);
+        let report = RenderReport::new(&session, scene_report, size, mode, &written.pictures);
         let report = report.with_frames(written.pictures).with_mean();
         session.headless.close()?;
         Ok(report.print(self.pictures.answer(), true, &written.files)?)

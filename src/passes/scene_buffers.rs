@@ -50,15 +50,17 @@ const WRITE_CHUNK: usize = 1 << 10;
 
 impl SceneBuffers {
     /// Uploads a scene, Gaussians or [layers](Scene) of them, its spherical harmonics stored as `format` says, in chunks,
-    /// and waits for it. Beside the scene it takes 32 MiB at most.
+    /// and waits for it. Beside the scene it takes 32 MiB at most. Layers that [own their Gaussians](rara_scene::Layer::owned)
+    /// are freed on the way.
     pub fn upload<'a>(
         device: &Device,
         scene: impl Into<Scene<'a>>,
         format: ShFormat,
     ) -> Result<Self> {
         let scene = scene.into();
-        let (mut buffers, packed) = Self::allocate(device, &scene, format)?;
-        for layer in &packed {
+        let (mut buffers, packed) = Self::allocate(device, scene, format)?;
+        for mut layer in packed {
+            layer.pack_in_place();
             let [gaussians, sh, blocks] = layer.offsets();
             let [gaussian_bytes, sh_bytes] = layer.bytes_each();
             let (order, target) = (&layer.order[..], (&mut buffers.gaussians, gaussians));
@@ -168,10 +170,11 @@ impl SceneBuffers {
                 staging.bytes.size()
             )));
         }
-        let (buffers, packed) = Self::allocate(device, &scene, format)?;
+        let (buffers, packed) = Self::allocate(device, scene, format)?;
         let [gaussians, sh, blocks] = sizes.map(|size| size as usize);
         let mut bytes = staging.bytes;
-        for layer in &packed {
+        for mut layer in packed {
+            layer.pack_in_place();
             // The places between the layers hold no Gaussian, and nothing reads them.
             let [first, second, third] = layer.offsets().map(|offset| offset as usize);
             let [gaussian_bytes, sh_bytes] =
@@ -202,7 +205,7 @@ impl SceneBuffers {
     /// Allocates the buffers, and packs what goes into them from each layer.
     fn allocate<'a>(
         device: &Device,
-        scene: &Scene<'a>,
+        scene: Scene<'a>,
         format: ShFormat,
     ) -> Result<(Self, Vec<PackedLayer<'a>>)> {
         // A layer's last block may have places that hold nothing.
@@ -214,7 +217,7 @@ impl SceneBuffers {
             )));
         }
         scene.check()?;
-        let sizes = sizes(scene, format);
+        let sizes = sizes(&scene, format);
         if sizes[1] > u64::from(u32::MAX) * 4 {
             return Err(Error::Invalid(format!(
                 "{} of spherical-harmonics degree {} need more than 2^32 numbers; lower the degree or store them in fewer bits",
@@ -227,11 +230,13 @@ impl SceneBuffers {
         let sh = (format, 3 * sh_coefficients(scene.sh_degree()));
         let (mut layers, mut packed) = (Vec::<SceneLayer>::new(), Vec::new());
         let numbers: Vec<_> = scene.numbers().collect();
-        for (layer, &numbers) in scene.layers().iter().zip(&numbers) {
+        let (count, sh_degree) = (scene.gaussians() as u32, scene.sh_degree());
+        let sample = PairSample::new(&scene);
+        for (layer, &numbers) in scene.into_layers().into_iter().zip(&numbers) {
             let first_block = layers.last().map_or(0, SceneLayer::block_end);
-            let gaussians = layer.gaussians();
+            layers.push(SceneLayer::new(&layer, first_block));
+            let gaussians = layer.into_gaussians();
             packed.push(PackedLayer::new(gaussians, first_block, numbers, sh));
-            layers.push(SceneLayer::new(layer, first_block));
         }
         join_sets(&mut layers, &numbers);
         let buffers = Self {
@@ -240,11 +245,11 @@ impl SceneBuffers {
             sh: gpu_only(device, "sh", sizes[1])?,
             blocks: gpu_only(device, "blocks", sizes[2])?,
             reordered: !packed.iter().flat_map(PackedLayer::numbers).is_sorted(),
-            count: scene.gaussians() as u32,
-            sh_degree: scene.sh_degree(),
+            count,
+            sh_degree,
             sh_format: format,
             layers,
-            sample: PairSample::new(scene),
+            sample,
             changes: 0,
         };
         log::info!(

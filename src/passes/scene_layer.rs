@@ -1,7 +1,9 @@
 //! A layer of a scene on the device: what a frame asks of it, and what goes into the scene's buffers.
 
+use std::borrow::Cow;
 use std::collections::HashMap;
 
+use bytemuck::cast_slice;
 use glam::Vec3;
 
 use crate::passes::{block_order, sh_storage};
@@ -10,7 +12,9 @@ use rara_base::error::{Error, Result, shortened};
 use rara_base::limits;
 use rara_scene::clip::Clip;
 use rara_scene::precision::ShFormat;
-use rara_scene::{Bounds, Gaussians, Layer, LayerState, Numbers, Scene, sh_coefficients};
+use rara_scene::{
+    Bounds, GaussianArrays, Gaussians, Layer, LayerState, Numbers, Scene, sh_coefficients,
+};
 
 /// A layer of a scene that is on the device.
 #[derive(Debug, Clone, PartialEq)]
@@ -170,7 +174,9 @@ fn corners(gaussians: &Gaussians) -> [Vec3; 2] {
 
 /// A layer as the device gets it.
 pub(super) struct PackedLayer<'a> {
-    gaussians: &'a Gaussians,
+    arrays: Cow<'a, GaussianArrays>,
+    /// True when the spherical harmonics among the arrays are packed.
+    has_packed: bool,
     /// The numbers of its Gaussians in the order of the device.
     pub(super) order: Vec<u32>,
     pub(super) blocks: Vec<Block>,
@@ -183,15 +189,19 @@ pub(super) struct PackedLayer<'a> {
 impl<'a> PackedLayer<'a> {
     /// Orders the Gaussians of a layer that begins with a block and has numbers in the scene; `sh` as the field says.
     pub(super) fn new(
-        gaussians: &'a Gaussians,
+        gaussians: Cow<'a, Gaussians>,
         first_block: u32,
         numbers: Numbers<'a>,
         sh: (ShFormat, usize),
     ) -> Self {
-        let order = block_order::order(gaussians);
+        let order = block_order::order(&gaussians);
         Self {
-            gaussians,
-            blocks: block_order::blocks(gaussians, &order),
+            blocks: block_order::blocks(&gaussians, &order),
+            arrays: match gaussians {
+                Cow::Borrowed(gaussians) => Cow::Borrowed(gaussians.arrays()),
+                Cow::Owned(gaussians) => Cow::Owned(gaussians.into_arrays()),
+            },
+            has_packed: false,
             order,
             first_block,
             numbers,
@@ -219,22 +229,39 @@ impl<'a> PackedLayer<'a> {
     }
 
     pub(super) fn gaussian(&self, number: u32) -> Gaussian {
-        let (scene, index) = (self.gaussians, number as usize);
+        let (arrays, index) = (&*self.arrays, number as usize);
         let in_scene = f32::from_bits(self.numbers.of(number));
         Gaussian {
-            position_opacity: scene.positions()[index]
-                .extend(scene.opacities()[index])
+            position_opacity: arrays.positions[index]
+                .extend(arrays.opacities[index])
                 .into(),
-            scale: scene.scales()[index].extend(in_scene).into(),
-            rotation: scene.rotations()[index].into(),
+            scale: arrays.scales[index].extend(in_scene).into(),
+            rotation: arrays.rotations[index].into(),
+        }
+    }
+
+    /// Packs the spherical harmonics in the place of what they are packed from, if nobody else needs that.
+    pub(super) fn pack_in_place(&mut self) {
+        let (format, numbers) = self.sh;
+        if let Cow::Owned(arrays) = &mut self.arrays
+            && 3 * sh_coefficients(arrays.sh_degree) == numbers
+        {
+            sh_storage::pack_in_place(format, numbers, &mut arrays.sh);
+            self.has_packed = true;
         }
     }
 
     /// Degrees that only other layers have are zero.
     pub(super) fn append_sh(&self, number: u32, out: &mut Vec<u32>) {
-        let own = self.gaussians.sh_of(number as usize);
         let (format, numbers) = self.sh;
-        if own.len() == numbers {
+        let own = match self.has_packed {
+            true => sh_storage::words(format, numbers),
+            false => 3 * sh_coefficients(self.arrays.sh_degree),
+        };
+        let own = &self.arrays.sh[number as usize * own..][..own];
+        if self.has_packed {
+            out.extend_from_slice(cast_slice(own));
+        } else if own.len() == numbers {
             sh_storage::pack(format, own, out);
         } else {
             let mut all = [0.0; 3 * limits::MAX_SH_COEFFICIENTS as usize];

@@ -1,8 +1,10 @@
 //! How a Gaussian's spherical harmonics lie in device memory: the twin of `glsl/sh_storage.glsl`.
 
+use bytemuck::cast_slice;
 use half::f16;
 
 use crate::types;
+use rara_base::parallel::in_parallel;
 use rara_scene::precision::ShFormat;
 
 /// Words of a Gaussian with `numbers` coefficients, all three channels counted.
@@ -13,6 +15,34 @@ pub(crate) fn words(format: ShFormat, numbers: usize) -> usize {
         ShFormat::Packed => 1 + numbers / 3,
         ShFormat::Byte => 2 + (numbers - 3).div_ceil(4),
     }
+}
+
+/// Gaussians that a thread packs at a time.
+const CHUNK: usize = 1 << 10;
+
+/// Packs the coefficients of all of a layer's Gaussians, `numbers` of each, where they are: the words follow each other as
+/// the bits of numbers, and the memory that is left is freed.
+pub(crate) fn pack_in_place(format: ShFormat, numbers: usize, sh: &mut Vec<f32>) {
+    let words = words(format, numbers);
+    if words == numbers {
+        return; // as they are
+    }
+    in_parallel(sh.chunks_mut(CHUNK * numbers), |chunk| {
+        let mut packed = Vec::with_capacity(words);
+        for index in 0..chunk.len() / numbers {
+            packed.clear();
+            pack(format, &chunk[index * numbers..][..numbers], &mut packed);
+            chunk[index * words..][..words].copy_from_slice(cast_slice(&packed));
+        }
+    });
+    let count = sh.len() / numbers;
+    for first in (0..count).step_by(CHUNK) {
+        let from = first * numbers;
+        let length = CHUNK.min(count - first) * words;
+        sh.copy_within(from..from + length, first * words);
+    }
+    sh.truncate(count * words);
+    sh.shrink_to_fit();
 }
 
 /// Appends a Gaussian's coefficients, `[coefficient][r, g, b]`, to `out`.
@@ -200,6 +230,21 @@ mod tests {
                 let mut one: Vec<f32> = (0..count).map(|_| 1e-6 * size * next()).collect();
                 one[count - 1] = size;
                 check(&one);
+            }
+        }
+    }
+
+    #[test]
+    fn in_place_all_become_what_each_becomes() {
+        let count = 3 * CHUNK + 7;
+        for numbers in [3, 12, 27, 48] {
+            let sh: Vec<f32> = (0..count * numbers).map(|n| (n as f32).sin()).collect();
+            for format in ALL {
+                let (mut each, mut all) = (Vec::new(), sh.clone());
+                sh.chunks(numbers)
+                    .for_each(|of_one| pack(format, of_one, &mut each));
+                pack_in_place(format, numbers, &mut all);
+                assert!(cast_slice::<f32, u32>(&all) == each, "{format:?}");
             }
         }
     }

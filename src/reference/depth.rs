@@ -186,7 +186,8 @@ pub fn expected<'a, T: Real>(
     clip: &Clip,
     settings: &Settings,
 ) -> Vec<[f64; 2]> {
-    let layers = layer::layers(&scene.into(), camera, clip);
+    let scene = scene.into();
+    let layers = layer::layers(&scene, camera, clip);
     let sides: Vec<_> = layers
         .iter()
         .map(|layer| super::sides(layer, settings))

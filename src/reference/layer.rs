@@ -24,7 +24,7 @@ pub struct LayerView<'a, T> {
 }
 
 pub fn layers<'a, T: Real>(
-    scene: &Scene<'a>,
+    scene: &'a Scene<'a>,
     camera: &Camera,
     clip: &Clip,
 ) -> Vec<LayerView<'a, T>> {
@@ -44,7 +44,7 @@ pub fn layers<'a, T: Real>(
     seen.collect()
 }
 
-fn faded<'a>(layer: &Layer<'a>) -> Cow<'a, Gaussians> {
+fn faded<'a>(layer: &'a Layer<'a>) -> Cow<'a, Gaussians> {
     let mut gaussians = Cow::Borrowed(layer.gaussians());
     let opacity = layer.state().opacity;
     if opacity != 1.0 {

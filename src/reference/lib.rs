@@ -57,7 +57,8 @@ pub fn render<'a, T: Real>(
     clip: &Clip,
     settings: &Settings,
 ) -> ReferenceFrame {
-    let layers = layer::layers(&scene.into(), camera, clip);
+    let scene = scene.into();
+    let layers = layer::layers(&scene, camera, clip);
     // Find each Gaussian's side.
     let sides: Vec<_> = layers.iter().map(|layer| sides(layer, settings)).collect();
     let splats = in_order::<T>(&layers, &sides, settings);

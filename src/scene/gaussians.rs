@@ -76,6 +76,12 @@ impl Gaussians {
         self.0
     }
 
+    /// The arrays.
+    #[doc(hidden)]
+    pub fn arrays(&self) -> &GaussianArrays {
+        &self.0
+    }
+
     /// Number of Gaussians.
     pub fn len(&self) -> usize {
         self.0.positions.len()

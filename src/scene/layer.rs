@@ -1,5 +1,7 @@
 //! A scene is a list of layers: Gaussians with a name that are placed, faded and hidden together.
 
+use std::borrow::Cow;
+
 use crate::Gaussians;
 use crate::clip::Clip;
 use crate::numbers::{self, Numbers};
@@ -68,7 +70,7 @@ pub fn check_clip(name: &str, clip: Option<&Clip>) -> Result<()> {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Layer<'a> {
     name: String,
-    gaussians: &'a Gaussians,
+    gaussians: Cow<'a, Gaussians>,
     state: LayerState,
     clip: Option<Clip>,
     /// The number of the first Gaussian of the set that the layer is a part of, and its Gaussians' numbers in that.
@@ -78,8 +80,18 @@ pub struct Layer<'a> {
 impl<'a> Layer<'a> {
     /// A layer of these Gaussians in the default state.
     pub fn new(name: impl Into<String>, gaussians: &'a Gaussians) -> Self {
+        Self::from_cow(name.into(), Cow::Borrowed(gaussians))
+    }
+
+    /// A layer that owns its Gaussians. Who uploads it has no use for them afterwards: the upload frees them where it can,
+    /// so that they and their copy on the device are never in memory as a whole together.
+    pub fn owned(name: impl Into<String>, gaussians: Gaussians) -> Self {
+        Self::from_cow(name.into(), Cow::Owned(gaussians))
+    }
+
+    fn from_cow(name: String, gaussians: Cow<'a, Gaussians>) -> Self {
         Self {
-            name: name.into(),
+            name,
             gaussians,
             state: LayerState::default(),
             clip: None,
@@ -121,7 +133,7 @@ impl<'a> Layer<'a> {
     {
         Layer {
             name: self.name.clone(),
-            gaussians,
+            gaussians: Cow::Borrowed(gaussians),
             state: self.state,
             clip: self.clip.clone(),
             numbers: self.numbers,
@@ -149,7 +161,13 @@ impl<'a> Layer<'a> {
     }
 
     /// Its Gaussians.
-    pub fn gaussians(&self) -> &'a Gaussians {
+    pub fn gaussians(&self) -> &Gaussians {
+        &self.gaussians
+    }
+
+    /// Its Gaussians, where nobody else needs the layer.
+    #[doc(hidden)]
+    pub fn into_gaussians(self) -> Cow<'a, Gaussians> {
         self.gaussians
     }
 
@@ -180,6 +198,12 @@ pub struct Scene<'a> {
 }
 
 impl<'a> Scene<'a> {
+    /// Its layers, where nobody else needs the scene.
+    #[doc(hidden)]
+    pub fn into_layers(self) -> Vec<Layer<'a>> {
+        self.layers
+    }
+
     /// Its layers.
     pub fn layers(&self) -> &[Layer<'a>] {
         &self.layers

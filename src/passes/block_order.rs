@@ -37,9 +37,9 @@ pub(super) fn order(scene: &Gaussians) -> Vec<u32> {
     let size = (high - low).max(Vec3::splat(f32::MIN_POSITIVE));
     let most = most_spanning_scale(scene);
     let key = |number: u32| {
-        let index = number as usize;
-        let reach = reach(scene, index) / size.max_element();
-        let class = if !is_spanning(scene, index) || spanning_scale(scene, index) > most {
+        let splat = Splat::of(scene, number);
+        let reach = splat.reach() / size.max_element();
+        let class = if !splat.is_spanning() || splat.spanning_scale() > most {
             FAINT
         } else if reach < MIDDLE_REACH {
             SMALL
@@ -49,7 +49,7 @@ pub(super) fn order(scene: &Gaussians) -> Vec<u32> {
             LARGE
         };
         // Outliers go to the ends, and a share that is no number to the beginning.
-        let share = ((scene.positions()[index] - low) / size).clamp(Vec3::ZERO, Vec3::ONE);
+        let share = ((splat.position - low) / size).clamp(Vec3::ZERO, Vec3::ONE);
         let cell = share * ((1 << BITS) - 1) as f32;
         class << (3 * BITS) | morton(cell.x as u32, cell.y as u32, cell.z as u32)
     };
@@ -90,13 +90,15 @@ fn block(scene: &Gaussians, numbers: &[u32]) -> Block {
     let (mut low, mut high) = (Vec3::splat(f32::MAX), Vec3::splat(f32::MIN));
     let (mut farthest, mut sigma, mut spanning) = (-1.0_f32, 0.0_f32, true);
     let mut spanning_scale = 0.0_f32;
-    for index in numbers.iter().map(|&number| number as usize) {
-        spanning &= is_spanning(scene, index);
-        if scene.opacities()[index] < limits::ALPHA_MIN {
+    // All of them first, so that the processor waits for several at a time: they lie anywhere in memory.
+    let splats: Vec<_> = numbers.iter().map(|&n| Splat::of(scene, n)).collect();
+    for splat in splats {
+        spanning &= splat.is_spanning();
+        if splat.opacity < limits::ALPHA_MIN {
             continue; // nowhere visible, wherever it is
         }
-        let position = scene.positions()[index];
-        let reach = reach(scene, index);
+        let position = splat.position;
+        let reach = splat.reach();
         if !(position.is_finite() && reach.is_finite()) {
             // It must be looked at, wherever the others are.
             farthest = f32::INFINITY;
@@ -106,8 +108,8 @@ fn block(scene: &Gaussians, numbers: &[u32]) -> Block {
         low = low.min(position);
         high = high.max(position);
         farthest = farthest.max(reach);
-        sigma = sigma.max(scene.scales()[index].max_element());
-        spanning_scale = spanning_scale.max(self::spanning_scale(scene, index));
+        sigma = sigma.max(splat.scale.max_element());
+        spanning_scale = spanning_scale.max(splat.spanning_scale());
     }
     let sigma = if spanning {
         sigma
@@ -122,49 +124,71 @@ fn block(scene: &Gaussians, numbers: &[u32]) -> Block {
     }
 }
 
-/// The [`spanning_scale`] beyond which a Gaussian counts as faint: as close as the eye has to be for that, it will seldom be.
+/// The [`Splat::spanning_scale`] beyond which a Gaussian counts as faint: as close as the eye has to be for that, it will seldom be.
 fn most_spanning_scale(scene: &Gaussians) -> f32 {
     let sample = (0..scene.len()).step_by(scene.len().div_ceil(SAMPLES));
-    let mut scales: Vec<_> = sample.map(|index| spanning_scale(scene, index)).collect();
+    let mut scales: Vec<_> = sample
+        .map(|n| Splat::of(scene, n as u32).spanning_scale())
+        .collect();
     let middle = scales.len() / 2;
     2.0 * *scales.select_nth_unstable_by(middle, f32::total_cmp).1
 }
 
-/// Pixels a unit of the layer from which an antialiased splat keeps [`limits::OPACITY_SPANNING`], whatever direction it is
-/// seen from; infinite where none is enough, and zero of splats that are not antialiased. With the middle and the least
-/// deviation a and b and `x` the square of the scale, its opacity is multiplied by at least the root of
-/// `a²x / (a²x + L) · b²x / (b²x + L)` (glsl/block.glsl). That this is the share that is needed is a quadratic equation in x.
-fn spanning_scale(scene: &Gaussians, index: usize) -> f32 {
-    /// Single precision may find the opacity too small by this factor.
-    const MARGIN: f64 = 1.05;
-    if !scene.is_antialiased() {
-        return 0.0;
-    }
-    let least = MARGIN * f64::from(limits::OPACITY_SPANNING);
-    let share = (least / f64::from(scene.opacities()[index])).powi(2);
-    let mut deviations = scene.scales()[index].to_array();
-    deviations.sort_unstable_by(f32::total_cmp);
-    let [b, a, _] = deviations.map(|deviation| f64::from(deviation).powi(2));
-    let low_pass = f64::from(limits::LOW_PASS);
-    let half = 0.5 * share * low_pass * (a + b);
-    let rest = (1.0 - share) * a * b;
-    let square = (half + (half * half + rest * share * low_pass * low_pass).sqrt()) / rest;
-    match square >= 0.0 {
-        true => square.sqrt() as f32,
-        false => f32::INFINITY, // fainter than that itself, flat, or no number
-    }
+/// What a Gaussian's place in the order and its block depend on.
+struct Splat {
+    position: Vec3,
+    scale: Vec3,
+    opacity: f32,
+    is_antialiased: bool,
 }
 
-/// How far from its centre a splat's contour of 1/255 can lie, the layer's units.
-fn reach(scene: &Gaussians, index: usize) -> f32 {
-    let times = scene.opacities()[index] * limits::ALPHA_MIN_INVERSE;
-    // This is a little more than single precision finds on the device.
-    let extent = 1.0001 * (2.0 * times.max(1.0).ln()).sqrt();
-    extent * scene.scales()[index].max_element()
-}
+impl Splat {
+    fn of(scene: &Gaussians, number: u32) -> Self {
+        let index = number as usize;
+        Self {
+            position: scene.positions()[index],
+            scale: scene.scales()[index],
+            opacity: scene.opacities()[index],
+            is_antialiased: scene.is_antialiased(),
+        }
+    }
 
-fn is_spanning(scene: &Gaussians, index: usize) -> bool {
-    scene.opacities()[index] >= limits::OPACITY_SPANNING
+    /// Pixels a unit of the layer from which an antialiased splat keeps [`limits::OPACITY_SPANNING`], whatever direction it is
+    /// seen from; infinite where none is enough, and zero of splats that are not antialiased. With the middle and the least
+    /// deviation a and b and `x` the square of the scale, its opacity is multiplied by at least the root of
+    /// `a²x / (a²x + L) · b²x / (b²x + L)` (glsl/block.glsl). That this is the share that is needed is a quadratic equation in x.
+    fn spanning_scale(&self) -> f32 {
+        /// Single precision may find the opacity too small by this factor.
+        const MARGIN: f64 = 1.05;
+        if !self.is_antialiased {
+            return 0.0;
+        }
+        let least = MARGIN * f64::from(limits::OPACITY_SPANNING);
+        let share = (least / f64::from(self.opacity)).powi(2);
+        let mut deviations = self.scale.to_array();
+        deviations.sort_unstable_by(f32::total_cmp);
+        let [b, a, _] = deviations.map(|deviation| f64::from(deviation).powi(2));
+        let low_pass = f64::from(limits::LOW_PASS);
+        let half = 0.5 * share * low_pass * (a + b);
+        let rest = (1.0 - share) * a * b;
+        let square = (half + (half * half + rest * share * low_pass * low_pass).sqrt()) / rest;
+        match square >= 0.0 {
+            true => square.sqrt() as f32,
+            false => f32::INFINITY, // fainter than that itself, flat, or no number
+        }
+    }
+
+    /// How far from its centre a splat's contour of 1/255 can lie, the layer's units.
+    fn reach(&self) -> f32 {
+        let times = self.opacity * limits::ALPHA_MIN_INVERSE;
+        // This is a little more than single precision finds on the device.
+        let extent = 1.0001 * (2.0 * times.max(1.0).ln()).sqrt();
+        extent * self.scale.max_element()
+    }
+
+    fn is_spanning(&self) -> bool {
+        self.opacity >= limits::OPACITY_SPANNING
+    }
 }
 
 /// The bounds of nearly all centres, from a sample.
@@ -291,7 +315,7 @@ mod tests {
         scene.set_antialiased(true);
         let mut fainter = 0;
         for index in 0..count {
-            let scale = f64::from(spanning_scale(&scene, index));
+            let scale = f64::from(Splat::of(&scene, index as u32).spanning_scale());
             for (axis, share) in [0, 1, 2]
                 .into_iter()
                 .flat_map(|axis| [(axis, 1.0), (axis, 0.9)])

@@ -113,22 +113,18 @@ fn scale(value: f32) -> (u32, f32) {
 
 /// `value` as a share of `scale`: a signed integer of `bits` bits whose largest value stands for the scale.
 fn share(value: f32, scale: f32, bits: u32) -> u32 {
-    let most = (1 << (bits - 1)) - 1;
+    let most = ((1 << (bits - 1)) - 1) as f32;
     // A scale is 0, or 2^-24 at least: this is finite.
-    let unit = if scale > 0.0 {
-        most as f32 / scale
-    } else {
-        0.0
-    };
-    // The scale may be below the largest, so the share is clamped; `as` stays in range by itself. `round` would be a call
-    // for each number.
-    let share = value * unit;
-    let count = (share + 0.5_f32.copysign(share)) as i32;
-    count.clamp(-most, most) as u32 & ((1 << bits) - 1)
+    let unit = if scale > 0.0 { most / scale } else { 0.0 };
+    // The scale may be below the largest, so the share is clamped. `round` would be a call for each number.
+    let share = (value * unit).clamp(-most, most);
+    (share + 0.5_f32.copysign(share)) as i32 as u32 & ((1 << bits) - 1)
 }
 
 fn largest(numbers: &[f32]) -> f32 {
-    numbers.iter().fold(0.0, |most, v| most.max(v.abs()))
+    // In a way that passes over what is no number, and that is a single instruction.
+    let larger = |most: f32, size: f32| if size > most { size } else { most };
+    numbers.iter().map(|v| v.abs()).fold(0.0, larger)
 }
 
 #[cfg(test)]

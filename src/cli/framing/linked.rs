@@ -87,11 +87,12 @@ fn median(numbers: impl Iterator<Item = f64>) -> f64 {
 fn cell(all: &[WeightedPoint]) -> Option<f64> {
     let spread = |axis: usize| {
         let mut along: Vec<f64> = all.iter().map(|one| one.reach.centre[axis]).collect();
-        along.sort_unstable_by(f64::total_cmp);
+        if along.is_empty() {
+            return 0.0;
+        }
         let tenth = along.len() / 10;
-        along
-            .last()
-            .map_or(0.0, |_| along[along.len() - 1 - tenth] - along[tenth])
+        let mut nth = |n| *along.select_nth_unstable_by(n, f64::total_cmp).1;
+        nth(all.len() - 1 - tenth) - nth(tenth)
     };
     let largest = (0..3).map(spread).fold(0.0, f64::max);
     if largest == 0.0 || !largest.is_finite() {

@@ -27,6 +27,8 @@ pub(super) struct PlyHeader {
     pub(super) size: u64,
     /// Lines up to and with `end_header`.
     pub(super) lines: u64,
+    /// How many of them are blank, which no header should have.
+    pub(super) blank: usize,
     /// The byte that ends each line of an ascii payload.
     pub(super) line_end: u8,
     /// What the comments say of the Gaussians.
@@ -36,8 +38,10 @@ pub(super) struct PlyHeader {
 impl PlyHeader {
     /// Parses the header at the start of `bytes`, the file's first [`MAX_BYTES`] (or all of it, if shorter).
     pub(super) fn parse(bytes: &[u8]) -> Result<Self, String> {
-        let (lines, size, line_end) = cut(bytes)?;
+        let (mut lines, size, line_end) = cut(bytes)?;
         scan(&lines)?;
+        let all = lines.len();
+        lines.retain(|line| !line.trim().is_empty());
         let mut text = lines.join("\n");
         text.push('\n');
         let parsed = Parser::<DefaultElement>::new()
@@ -51,7 +55,9 @@ impl PlyHeader {
                     None => "the header has no valid `format` line; export the scene again".into(),
                 },
             )?;
-        let elements: Vec<ElementDef> = parsed.elements.into_values().collect();
+        let mut elements: Vec<ElementDef> = parsed.elements.into_values().collect();
+        // Without properties an element has no bytes, but lines in a text.
+        elements.retain(|e| parsed.encoding == Encoding::Ascii || !e.properties.is_empty());
         for element in &elements {
             check(element)?;
         }
@@ -59,7 +65,8 @@ impl PlyHeader {
             encoding: parsed.encoding,
             elements,
             size: size as u64,
-            lines: lines.len() as u64,
+            lines: all as u64,
+            blank: all - lines.len(),
             line_end,
             kind: TrainerKind::from_comments(&lines),
         })

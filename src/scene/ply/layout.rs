@@ -28,6 +28,10 @@ pub(super) struct Layout<'a> {
     pub(super) count: u64,
     pub(super) fields: Vec<Field>,
     pub(super) sh_degree: u32,
+    /// True for discs, which have no third scale.
+    pub(super) is_flat: bool,
+    /// The most of a colour, where `red`, `green` and `blue` stand for the harmonics of degree 0.
+    pub(super) full_colour: Option<f32>,
     /// The properties that were asked for and the Gaussians' filters, in the order of their slots from [`SLOTS`] on; without
     /// values.
     pub(super) properties: Vec<Property>,
@@ -50,12 +54,21 @@ impl<'a> Layout<'a> {
                  export the scene with one of these"
             )
         })?;
-        let missing: Vec<_> = FIXED
+        let mut missing: Vec<_> = FIXED
             .iter()
             .copied()
             .filter(|name| !vertex.properties.contains_key(*name))
             .collect();
-        trained::check(header.kind, vertex, &missing)?;
+        trained::check(vertex)?;
+        let is_flat = missing == ["scale_2"];
+        missing.retain(|name| !(is_flat && *name == "scale_2"));
+        let full_colour = full_colour(vertex).filter(|_| missing == FIXED[SH..]);
+        missing.retain(|_| full_colour.is_none());
+        let slot_of = |name: &str| {
+            let colour = COLOURS.iter().position(|&colour| colour == name);
+            let colour = colour.filter(|_| full_colour.is_some());
+            slot_of(name, rest).or(colour.map(|channel| SH + channel))
+        };
         if missing.iter().any(|name| name.len() > 1) && missing.len() > 8 {
             return Err(
                 "the file holds points or a mesh, not Gaussians: it has no scale_*, rot_*, opacity and f_dc_* \
@@ -71,7 +84,7 @@ impl<'a> Layout<'a> {
         }
         let mut asked = asked.to_vec();
         asked.extend(trained::has_filter(vertex).then_some(FILTER));
-        let properties = asked_properties(vertex, &asked, rest)?;
+        let properties = asked_properties(vertex, &asked, &slot_of)?;
         let asked_slot = |name: &str| {
             let at = properties.iter().position(|asked| asked.name == name);
             at.map(|at| SLOTS + at)
@@ -80,7 +93,7 @@ impl<'a> Layout<'a> {
             .properties
             .values()
             .map(|property| {
-                let slot = slot_of(&property.name, rest).or_else(|| asked_slot(&property.name));
+                let slot = slot_of(&property.name).or_else(|| asked_slot(&property.name));
                 match Field::from(&property.data_type) {
                     Field::Scalar(kind, _) => Ok(Field::Scalar(kind, slot)),
                     Field::List(..) if slot.is_some() => Err(format!(
@@ -99,6 +112,8 @@ impl<'a> Layout<'a> {
             count: vertex.count as u64,
             fields,
             sh_degree,
+            is_flat,
+            full_colour,
             properties,
             after,
         })
@@ -142,11 +157,29 @@ impl<'a> Layout<'a> {
     }
 }
 
+/// What point clouds call a colour, in the order of its channels.
+const COLOURS: [&str; 3] = ["red", "green", "blue"];
+
+/// The most of the colours that a file has: of integers the type's, of floats 1.
+fn full_colour(vertex: &ElementDef) -> Option<f32> {
+    let mut all =
+        COLOURS.iter().map(
+            |name| match Field::from(&vertex.properties.get(*name)?.data_type) {
+                Field::Scalar(Number::U8, _) => Some(255.0),
+                Field::Scalar(Number::U16, _) => Some(65535.0),
+                Field::Scalar(Number::F32 | Number::F64, _) => Some(1.0),
+                _ => None,
+            },
+        );
+    let first = all.next()?;
+    all.all(|other| other == first).then_some(first?)
+}
+
 /// The properties that were asked for, each once, or what is wrong with one.
 fn asked_properties(
     vertex: &ElementDef,
     asked: &[&str],
-    rest: usize,
+    slot_of: &dyn Fn(&str) -> Option<usize>,
 ) -> Result<Vec<Property>, String> {
     /// Names in a message, at most.
     const NAMED: usize = 12;
@@ -156,7 +189,7 @@ fn asked_properties(
         if properties.iter().any(|known| known.name == name) {
             continue;
         }
-        if slot_of(name, rest).is_some() {
+        if slot_of(name).is_some() {
             return Err(format!(
                 "`{quoted}` is what a Gaussian is made of, and no other property; use opacity, size, red, green, blue or a \
                  shape"
@@ -172,7 +205,7 @@ fn asked_properties(
             None => {
                 let others = vertex.properties.keys();
                 let mut others: Vec<String> = others
-                    .filter(|name| slot_of(name, rest).is_none())
+                    .filter(|name| slot_of(name).is_none())
                     .map(|name| shortened(name))
                     .collect();
                 let more = others.len().saturating_sub(NAMED);

@@ -18,7 +18,7 @@ use self::trained::TrainerKind;
 use super::assemble::Assembler;
 use super::failure::Failure;
 use super::load::{Input, Progress, SceneFile};
-use super::{Format, Property};
+use super::{Format, LoadReport, Property};
 use rara_base::counted::counted;
 use rara_base::error::{Error, Result};
 
@@ -50,15 +50,13 @@ pub(super) fn read(
                 rara_base::error::shortened(property)
             )));
         }
-        if header.kind == Some(TrainerKind::Discs) {
-            return Err(format(trained::DISCS.into()));
-        }
         let start = SeekFrom::Start(header.size);
         source.seek(start).map_err(Error::io(name))?;
         let made = packed::read(source, &header, left, progress);
         let made = made.map_err(|failure| failure.error_in(name))?;
         let (mut loaded, properties) = made.finish();
         loaded.format = Format::CompressedPly;
+        note(&mut loaded.report, &header, false);
         loaded.says(header.kind.map(|kind| kind == TrainerKind::Antialiased));
         return Ok((loaded, properties));
     }
@@ -79,6 +77,15 @@ pub(super) fn read(
     read(source, left, &header, &layout, &mut assembler, progress)
         .map_err(|failure| failure.error_in(name))?;
     let (mut loaded, mut properties) = assembler.finish();
+    note(&mut loaded.report, &header, layout.is_flat);
+    if layout.is_flat {
+        trained::flatten(&mut loaded.gaussians);
+    }
+    if let Some(full) = layout.full_colour {
+        trained::colour(&mut loaded.gaussians, full);
+        let note = "took the colours from red, green and blue, since there is no f_dc_0";
+        loaded.report.note(note.into());
+    }
     let mut antialiased = header.kind.map(|kind| kind == TrainerKind::Antialiased);
     if let Some(at) = properties
         .iter()
@@ -102,4 +109,17 @@ pub(super) fn read(
     }
     loaded.says(antialiased);
     Ok((loaded, properties))
+}
+
+/// Says what of a header is drawn otherwise than it stands there.
+fn note(report: &mut LoadReport, header: &PlyHeader, is_flat: bool) {
+    if is_flat || header.kind == Some(TrainerKind::Discs) {
+        report.note(trained::DISCS.into());
+    }
+    if header.blank > 0 {
+        report.note(format!(
+            "skipped {} of the header",
+            counted(header.blank, "blank line")
+        ));
+    }
 }

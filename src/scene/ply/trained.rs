@@ -3,15 +3,33 @@
 
 use ply_rs::ply::{ElementDef, PropertyType};
 
-use crate::Gaussians;
+use crate::{Gaussians, SH_0};
 
 /// The property in which Mip-Splatting and its descendants leave a deviation that each Gaussian has in all directions beside
 /// its scales: the finest detail that the training pictures show of it.
 pub(super) const FILTER: &str = "filter_3D";
 
-/// What is wrong with the Gaussians of 2DGS.
-pub(super) const DISCS: &str = "the file holds discs of 2D Gaussian Splatting, which have the two scales scale_0 and scale_1 \
-    and are intersected with each line of sight, not projected as 3D Gaussians are; train the scene with 3DGS";
+/// The note on discs of 2DGS, which that intersects with each line of sight.
+pub(super) const DISCS: &str = "drew the discs of 2D Gaussian Splatting as flat Gaussians, which are projected, not intersected with each line of sight";
+/// The third deviation of a disc, as a share of the smaller of the others.
+const FLAT: f32 = 1e-3;
+
+/// Gives discs, which have two scales, a third one.
+pub(super) fn flatten(gaussians: &mut Gaussians) {
+    for scale in gaussians.scales_mut() {
+        scale.z = FLAT * scale.x.min(scale.y);
+    }
+}
+
+/// Makes harmonics of degree 0 of what was read in their place: colours, of which `full` is the most.
+pub(super) fn colour(gaussians: &mut Gaussians, full: f32) {
+    let stride = 3 * gaussians.sh_coefficients();
+    for sh in gaussians.sh_mut().chunks_exact_mut(stride) {
+        for value in &mut sh[..3] {
+            *value = (*value / full - 0.5) / SH_0 as f32;
+        }
+    }
+}
 
 /// The kinds of Gaussians that comments tell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -42,17 +60,9 @@ impl TrainerKind {
     }
 }
 
-/// Refuses Gaussians that are drawn in another way than those of 3DGS. `missing` are the properties that these have and the
-/// file has not.
-pub(super) fn check(
-    kind: Option<TrainerKind>,
-    vertex: &ElementDef,
-    missing: &[&str],
-) -> Result<(), String> {
+/// Refuses Gaussians that are drawn in another way than those of 3DGS.
+pub(super) fn check(vertex: &ElementDef) -> Result<(), String> {
     let has = |name: &str| vertex.properties.contains_key(name);
-    if missing == ["scale_2"] || kind == Some(TrainerKind::Discs) {
-        return Err(DISCS.into());
-    }
     if has("f_offset_0") && has("f_anchor_feat_0") {
         return Err(
             "the file holds anchors of Scaffold-GS or one of its kin (f_offset_*, f_anchor_feat_*), of which networks that \

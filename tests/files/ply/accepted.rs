@@ -131,6 +131,61 @@ fn other_elements_before_and_after() {
 }
 
 #[test]
+fn what_a_header_lacks_is_made_up_for_and_said() {
+    for format in FORMATS {
+        let mut names = FIXED.to_vec();
+        names.retain(|name| *name != "scale_2");
+        let flat = load_bytes(&scene_file(format, 5, &floats(&names)).bytes()).unwrap();
+        assert!(
+            flat.report
+                .to_string()
+                .contains("discs of 2D Gaussian Splatting")
+        );
+        for (i, scale) in flat.gaussians.scales().iter().enumerate() {
+            assert_eq!(scale.y, value("scale_1", i, false).exp() as f32);
+            assert_eq!(scale.z, 1e-3 * scale.x.min(scale.y));
+        }
+
+        names = FIXED.to_vec();
+        names.retain(|name| !name.starts_with("f_dc_"));
+        for (kind, full) in [("uchar", 255.0), ("uint16", 65535.0), ("float", 1.0)] {
+            let mut properties = floats(&names);
+            properties.extend(["red", "green", "blue"].map(|name| (kind, name)));
+            let coloured = load_bytes(&scene_file(format, 5, &properties).bytes()).unwrap();
+            assert!(
+                coloured
+                    .report
+                    .to_string()
+                    .contains("from red, green and blue")
+            );
+            for i in 0..5 {
+                let share = value("green", i, kind != "float") / full;
+                let shown = coloured.gaussians.sh_of(i)[1] * 0.282_094_8 + 0.5;
+                assert!((f64::from(shown) - share).abs() < 1e-6 * share.abs().max(1.0));
+            }
+            properties.retain(|(_, name)| *name != "blue");
+            let error = load_bytes(&scene_file(format, 5, &properties).bytes()).unwrap_err();
+            assert!(
+                error.to_string().contains("lacks f_dc_0, f_dc_1, f_dc_2"),
+                "{error}"
+            );
+        }
+
+        let mut file = scene_file(format, 5, &floats(FIXED));
+        file.header = file.header.replacen("element", "\n  \nelement", 1);
+        if format != Format::Ascii {
+            file.header += "element sh 7\n";
+        }
+        let blank = load_bytes(&file.bytes()).unwrap();
+        assert_eq!(
+            blank.report.lines(),
+            ["skipped 2 blank lines of the header"]
+        );
+        check_scene(&blank.gaussians, 5);
+    }
+}
+
+#[test]
 fn line_ends_and_missing_last_one() {
     let file = scene_file(Format::Ascii, 3, &floats(FIXED)).bytes();
     let text = String::from_utf8(file).unwrap();

@@ -53,8 +53,6 @@ fn headers_that_are_refused() {
         ),
         (compressed.to_vec(), "`chunk` with its 1 element"),
         (mesh.to_vec(), "mesh"),
-        (without("scale_2"), "discs of 2D Gaussian Splatting"),
-        (with("comment SplatRenderMode: 2dgs\n"), "discs of 2D"),
         (
             with("property float f_offset_0\nproperty float f_anchor_feat_0\n"),
             "anchors of Scaffold-GS",

@@ -50,6 +50,14 @@ impl Format {
         Gltf => "glTF", "glTF with KHR_gaussian_splatting";
     }
 
+    /// True where a file's name is that of a scene in one file.
+    #[cfg(feature = "formats")]
+    pub(super) fn is_name(name: &str) -> bool {
+        let name = name.to_ascii_lowercase();
+        let mut endings = Self::FILES.iter().chain(&[".glb", ".gltf"]);
+        endings.any(|ending| ending.starts_with('.') && name.ends_with(ending))
+    }
+
     /// The files that are read, for messages and help.
     pub fn readable() -> String {
         match Self::FILES {

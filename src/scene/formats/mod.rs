@@ -8,15 +8,16 @@ mod ksplat;
 mod sog;
 mod splat;
 mod spz;
+mod wrapped;
 mod write;
 
-use std::io::Read;
+use std::io::{Cursor, Read};
 use std::path::Path;
 
 pub(super) use self::write::WRITERS;
 use super::assemble::{Assembler, room};
 use super::failure::Failure;
-use super::load::{Input, Progress};
+use super::load::{Input, Progress, load_from_with};
 use super::{Format, Gaussians, LoadReport, Property, SH_0, SceneFile};
 use crate::placement::Placement;
 use rara_base::counted::counted;
@@ -174,6 +175,10 @@ pub(super) fn read(
         .take(total)
         .read_to_end(&mut bytes)
         .map_err(Error::io(name))?;
+    if let Some(scene) = wrapped::scene(&bytes).map_err(|failure| failure.error_in(name))? {
+        drop(bytes);
+        return read_wrapped(&scene, name, input.properties);
+    }
     let read = read(&bytes, input.folder);
     let (made, format) = read.map_err(|failure| failure.error_in(name))?;
     if let Some(property) = input.properties.first() {
@@ -193,6 +198,22 @@ pub(super) fn read(
         format,
     };
     Ok((loaded, Vec::new()))
+}
+
+/// Reads a scene that another file wraps, which wraps no other.
+fn read_wrapped(
+    scene: &[u8],
+    name: &Path,
+    properties: &[&str],
+) -> Result<(SceneFile, Vec<Property>)> {
+    let again = wrapped::scene(scene).map_err(|failure| failure.error_in(name))?;
+    if again.is_some() {
+        return Err(Error::format(
+            name,
+            "it is compressed twice; decompress it once",
+        ));
+    }
+    load_from_with(Cursor::new(scene), name, properties, &mut |_, _| ())
 }
 
 /// JSON of any of the formats that are JSON.

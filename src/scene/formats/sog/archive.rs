@@ -1,5 +1,6 @@
 //! The files in a zip archive, stored or deflated: what `.sog` files are.
 
+use std::borrow::Cow;
 use std::io::Cursor;
 
 use zip::ZipArchive;
@@ -10,18 +11,24 @@ use rara_base::counted::counted;
 use rara_base::error::shortened;
 
 /// An archive's directory.
-pub(super) struct Archive<'a>(ZipArchive<Cursor<&'a [u8]>>);
+pub(in super::super) struct Archive<'a>(ZipArchive<Cursor<&'a [u8]>>);
 
 impl<'a> Archive<'a> {
-    pub(super) fn open(bytes: &'a [u8]) -> Result<Self, Failure> {
+    pub(in super::super) fn open(bytes: &'a [u8]) -> Result<Self, Failure> {
         let archive = ZipArchive::new(Cursor::new(bytes)).map_err(|error| {
             format!("this zip archive has no directory that can be read ({error}); it is cut off, get it again")
         })?;
         Ok(Self(archive))
     }
 
+    /// The names of all files, without their folders.
+    pub(in super::super) fn names(&self) -> impl Iterator<Item = String> {
+        let own = |path: Cow<'_, str>| path.rsplit(['/', '\\']).next().map(str::to_owned);
+        self.0.file_names().filter_map(move |path| own(path.ok()?))
+    }
+
     /// The file of a name, in whatever folder of the archive.
-    pub(super) fn get(&self, name: &str) -> Result<Vec<u8>, Failure> {
+    pub(in super::super) fn get(&self, name: &str) -> Result<Vec<u8>, Failure> {
         let quoted = shortened(name);
         let mut names = self.0.file_names();
         let own = |path: &str| path.rsplit(['/', '\\']).next() == Some(name);

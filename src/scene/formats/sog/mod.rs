@@ -9,7 +9,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use self::archive::Archive;
+pub(super) use self::archive::Archive;
 use self::meta::{Meta, Range};
 use self::picture::Picture;
 use super::super::assemble::{ColumnForm, OPACITY, ROTATION, SCALES, SH, unit_quaternion};

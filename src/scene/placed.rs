@@ -5,6 +5,10 @@ use glam::{DMat3, DVec3};
 use super::{Gaussians, sh_coefficients};
 use crate::harmonics::basis;
 use crate::placement::Placement;
+use rara_base::parallel::in_parallel;
+
+/// Gaussians whose spherical harmonics a thread turns at a time.
+const CHUNK: usize = 1 << 10;
 
 impl Gaussians {
     /// Scales, turns and moves the Gaussians themselves, their spherical harmonics too, in double precision. A layer's
@@ -31,11 +35,16 @@ impl Gaussians {
         let degree = self.sh_degree();
         let bands = bands(DMat3::from_quat(turn), degree);
         let coefficients = self.sh_coefficients();
-        for own in self.sh_mut().chunks_exact_mut(3 * coefficients) {
-            for (band, matrix) in (1..).zip(&bands) {
-                turn_band(own, sh_coefficients(band - 1), matrix);
-            }
-        }
+        in_parallel(
+            self.sh_mut().chunks_mut(CHUNK * 3 * coefficients),
+            |chunk| {
+                for own in chunk.chunks_exact_mut(3 * coefficients) {
+                    for (band, matrix) in (1..).zip(&bands) {
+                        turn_band(own, sh_coefficients(band - 1), matrix);
+                    }
+                }
+            },
+        );
         self.drop_infinite()
     }
 

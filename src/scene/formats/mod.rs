@@ -58,9 +58,13 @@ impl FormatOutput {
                 if self.gaussians.is_antialiased() { "antialiased" } else { "as they are" }
             ));
         }
-        self.gaussians
-            .try_append(&other.gaussians)
-            .ok_or_else(|| Failure::Memory(counted(other.elements + before, "Gaussian")))?;
+        if self.gaussians.is_empty() {
+            self.gaussians = other.gaussians; // most files have one part
+        } else {
+            self.gaussians
+                .try_append(&other.gaussians)
+                .ok_or_else(|| Failure::Memory(counted(other.elements + before, "Gaussian")))?;
+        }
         self.report.append(other.report, before);
         self.elements += other.elements;
         let dropped = other.dropped.iter().map(|element| before + element);

@@ -15,6 +15,7 @@ mod tests;
 
 use rara_base::counted::counted;
 use rara_base::error::{Error, Result};
+use rara_base::parallel::{in_parallel, threads};
 use rara_base::setters;
 use rara_scene::clip::Clip;
 use rara_scene::settings::{Mode, Settings};
@@ -206,22 +207,13 @@ enum Fate {
 
 /// The fates of all Gaussians. Each is found by itself, so that the number of threads changes nothing.
 fn fates(region: &Region<'_>, count: usize, children: usize) -> Vec<Fate> {
-    let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let mut fates = vec![Fate::Visible; count];
     // More parts than threads, since cut Gaussians lie together.
-    let part = count.div_ceil(16 * threads).max(1);
-    let parts = std::sync::Mutex::new(fates.chunks_mut(part).enumerate());
-    std::thread::scope(|scope| {
-        for _ in 0..threads {
-            scope.spawn(|| {
-                loop {
-                    let next = parts.lock().map_or(None, |mut parts| parts.next());
-                    let Some((number, part_of)) = next else { break };
-                    for (offset, fate) in part_of.iter_mut().enumerate() {
-                        *fate = region.fate(number * part + offset, children);
-                    }
-                }
-            });
+    let part = count.div_ceil(16 * threads()).max(1);
+    let parts = (0..).step_by(part).zip(fates.chunks_mut(part));
+    in_parallel(parts, |(first, fates)| {
+        for (index, fate) in (first..).zip(fates) {
+            *fate = region.fate(index, children);
         }
     });
     fates

@@ -50,7 +50,7 @@ pub(super) struct CameraArgs {
     #[arg(long, value_name = "HEIGHT|fit", value_parser = ortho, allow_hyphen_values = true)]
     #[arg(conflicts_with_all = ["cameras", "camera", "fov_y"])]
     ortho: Option<Ortho>,
-    /// Take cameras from a cameras.json, transforms.json or COLMAP folder
+    /// Take cameras from a cameras.json, transforms.json, camera_path.json or COLMAP folder
     ///
     /// With --view and without this flag the cameras are those beside the scene.
     #[arg(long, value_name = "FILE", conflicts_with = "camera")]

@@ -119,6 +119,41 @@ fn transforms_json() {
     assert!((angle.fx - 512.0).abs() < 1e-9 && angle.fx == angle.fy && angle.width == 1024);
 }
 
+#[test]
+fn paths_of_the_viewer() {
+    let path = |kind: &str, fov: f64| {
+        let pose = "[1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 4, 0, 0, 0, 1]";
+        let camera = format!(r#"{{"camera_to_world": {pose}, "fov": {fov}, "aspect": 1.5}}"#);
+        format!(
+            r#"{{"keyframes": [], "camera_type": "{kind}", "render_height": 480, "render_width": 720, "fps": 24,
+            "camera_path": [{camera}, {camera}]}}"#
+        )
+    };
+    let cameras = load_json(&path("perspective", 90.0)).unwrap();
+    assert_eq!(cameras.len(), 2);
+    let camera = &cameras[1].camera;
+    assert_eq!((camera.width, camera.height), (720, 480));
+    assert!((camera.fx - 240.0).abs() < 1e-9 && (camera.fy - 240.0).abs() < 1e-9);
+    // At (0, 0, 4) along -z, with y up.
+    let matrix = camera.world_to_camera();
+    let seen = matrix.transform_point3(glam::DVec3::new(1.0, 2.0, 1.0));
+    assert!(
+        seen.abs_diff_eq(glam::DVec3::new(1.0, -2.0, 3.0), 1e-12),
+        "{seen}"
+    );
+    for (text, says) in [
+        (path("equirectangular", 90.0), "only perspective"),
+        (path("perspective", 180.0), "between 0 and 180"),
+        (
+            path("perspective", 90.0).replace("[1, 0", "[0"),
+            "16 numbers",
+        ),
+    ] {
+        let message = load_json(&text).unwrap_err().to_string();
+        assert!(message.contains(says), "{message}");
+    }
+}
+
 fn single() -> String {
     let matrix = camera().world_to_camera().transpose().to_cols_array();
     format!(

@@ -35,7 +35,7 @@ pub enum ColmapFormat {
     Text,
 }
 
-/// Loads every camera of a 3DGS `cameras.json`, a nerfstudio `transforms.json` or a COLMAP sparse folder (with
+/// Loads every camera of a 3DGS `cameras.json`, a nerfstudio `transforms.json` or `camera_path.json`, or a COLMAP sparse folder (with
 /// `cameras` and `images`, each `.bin` or `.txt`; a folder that has `sparse/0` does too). JSON files keep their order,
 /// COLMAP's cameras are sorted by picture name. A file with a single camera (see [`load_camera`]) gives that one, and a list
 /// of such cameras, each perhaps with a `"name"`, all of them.
@@ -72,6 +72,7 @@ pub fn cameras_from_json(json: &[u8], name: &Path) -> Result<Vec<NamedCamera>> {
     let cameras = match json.first() {
         Some(b'[') if single::is_list(json) => single::parse_list(json),
         Some(b'[') => inria::parse(json),
+        Some(b'{') if nerfstudio::is_path(json) => nerfstudio::parse_path(json),
         Some(b'{') => nerfstudio::parse(json).or_else(|error| match single::parse(json) {
             Ok(camera) => Ok(vec![NamedCamera { name: "0".into(), camera }]),
             Err(_) => Err(error),

@@ -1,4 +1,5 @@
-//! `transforms.json` of nerfstudio and instant-ngp: OpenGL cameras, intrinsics shared or frame by frame.
+//! `transforms.json` of nerfstudio and instant-ngp, and `camera_path.json` of nerfstudio's viewer: OpenGL cameras, intrinsics
+//! shared or frame by frame.
 
 use glam::{DMat3, DVec3};
 use serde::Deserialize;
@@ -114,6 +115,88 @@ impl Intrinsics {
     }
 }
 
+/// The pose of an OpenGL camera, from the rows of a matrix that the file calls `name`.
+fn pose(rows: &[[f64; 4]], name: &str, what: &str) -> Result<Pose, String> {
+    let whole =
+        matches!(rows.len(), 3 | 4) && rows.get(3).is_none_or(|row| *row == [0.0, 0.0, 0.0, 1.0]);
+    if !whole {
+        return Err(format!(
+            "the {name} of {what} is no rigid 4x4 matrix; export the cameras again"
+        ));
+    }
+    let column = |i: usize| DVec3::new(rows[0][i], rows[1][i], rows[2][i]);
+    // OpenGL's up and backward are our down and forward, turned round.
+    Ok(Pose::CameraToWorld {
+        axes: DMat3::from_cols(column(0), -column(1), -column(2)),
+        eye: column(3),
+    })
+}
+
+/// A path of the viewer: a camera for each picture of a film.
+#[derive(Deserialize)]
+struct CameraPath {
+    camera_path: Vec<PathCamera>,
+    render_width: f64,
+    render_height: f64,
+    camera_type: Option<String>,
+}
+
+#[derive(Deserialize)]
+struct PathCamera {
+    /// Row by row.
+    camera_to_world: Vec<f64>,
+    /// Vertical, degrees.
+    fov: f64,
+}
+
+/// True for JSON with the viewer's list of cameras.
+pub(super) fn is_path(json: &[u8]) -> bool {
+    /// What stands there is looked at later.
+    #[derive(Deserialize)]
+    struct Any {
+        #[serde(rename = "camera_path")]
+        _camera_path: serde::de::IgnoredAny,
+    }
+    json::parse::<Any>(json).is_ok()
+}
+
+pub(super) fn parse_path(json: &[u8]) -> Result<Vec<NamedCamera>, String> {
+    let file: CameraPath = json::parse(json)?;
+    let kind = file.camera_type.as_deref().unwrap_or("perspective");
+    if kind != "perspective" {
+        return Err(format!(
+            "its pictures are {}, and only perspective ones are drawn along a path; choose that in the viewer",
+            shortened(kind)
+        ));
+    }
+    let named = |(number, camera): (usize, PathCamera)| {
+        let what = format!("camera {number} of the path");
+        let (rows, rest) = camera.camera_to_world.as_chunks::<4>();
+        if !(rest.is_empty() && camera.fov > 0.0 && camera.fov < 180.0) {
+            return Err(format!(
+                "{what} has no matrix of 16 numbers, or an angle that is not between 0 and 180 degrees; export the path again"
+            ));
+        }
+        let focal = file.render_height / 2.0 / (camera.fov.to_radians() / 2.0).tan();
+        let parts = Parts {
+            width: file.render_width,
+            height: file.render_height,
+            focal: (focal, focal),
+            centre: (None, None),
+            pose: pose(rows, "camera_to_world", &what)?,
+        };
+        Ok(NamedCamera {
+            name: number.to_string(),
+            camera: parts.camera(&what)?,
+        })
+    };
+    file.camera_path
+        .into_iter()
+        .enumerate()
+        .map(named)
+        .collect()
+}
+
 pub(super) fn parse(json: &[u8]) -> Result<Vec<NamedCamera>, String> {
     let file: Transforms = json::parse(json)?;
     let shared = file.shared;
@@ -123,25 +206,12 @@ pub(super) fn parse(json: &[u8]) -> Result<Vec<NamedCamera>, String> {
         let intrinsics = frame.own.or(&shared);
         intrinsics.check_undistorted(&what)?;
         let (size, focal) = intrinsics.size_and_focal(&what)?;
-        let rows = &frame.transform_matrix;
-        let whole = matches!(rows.len(), 3 | 4)
-            && rows.get(3).is_none_or(|row| *row == [0.0, 0.0, 0.0, 1.0]);
-        if !whole {
-            return Err(format!(
-                "the transform_matrix of {what} is no rigid 4x4 matrix; export the cameras again"
-            ));
-        }
-        let column = |i: usize| DVec3::new(rows[0][i], rows[1][i], rows[2][i]);
         let parts = Parts {
             width: size.0,
             height: size.1,
             focal,
             centre: (intrinsics.cx, intrinsics.cy),
-            // OpenGL's up and backward are our down and forward, turned round.
-            pose: Pose::CameraToWorld {
-                axes: DMat3::from_cols(column(0), -column(1), -column(2)),
-                eye: column(3),
-            },
+            pose: pose(&frame.transform_matrix, "transform_matrix", &what)?,
         };
         let camera = parts.camera(&what)?;
         Ok(NamedCamera { name, camera })

@@ -10,7 +10,7 @@ pub fn threads() -> usize {
     thread::available_parallelism().map_or(1, usize::from)
 }
 
-/// What `work` makes of each task, in the order of the tasks, whichever thread did which. The calling thread takes one task
+/// Returns the results of `work` in the order of the tasks, whichever thread did which. The calling thread takes one task
 /// after the other from `tasks`, which may read them from a file, and works where the others have enough to do; only a
 /// few tasks are in memory at a time.
 pub fn in_parallel<T: Send, R: Send>(

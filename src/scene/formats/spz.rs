@@ -1,10 +1,13 @@
 //! `.spz`: each attribute in a run of its own, quantised; all in one gzip stream (versions 1 to 3), or each in a stream of
 //! zstd (version 4).
 
+use glam::{DQuat, DVec3};
+
 use super::super::assemble::{ColumnForm, OPACITY, ROTATION, SCALES, SH, unit_quaternion};
 use super::bytes::{Bytes, f16_at};
 use super::inflate::{self, Gzip};
 use super::{Failure, FormatOutput, room};
+use crate::placement::Placement;
 use rara_base::counted::counted;
 
 const MAGIC: &[u8; 4] = b"NGSP";
@@ -85,8 +88,12 @@ impl SpzHeader {
         self.count * self.sizes().iter().sum::<u64>()
     }
 
-    /// The Gaussians of six runs; `axes` are the signs that turn the file's axes into ours.
-    fn made(&self, runs: [&[u8]; 6], axes: [f64; 3]) -> Result<FormatOutput, Failure> {
+    /// The Gaussians of six runs, with axes that become ours.
+    fn made(&self, runs: [&[u8]; 6], axes: Axes) -> Result<FormatOutput, Failure> {
+        let Axes {
+            signs: axes,
+            is_z_up,
+        } = axes;
         let degree = self.degree.min(3);
         let room = room(self.count, degree, ColumnForm::LogScales)?;
         let [position, _, _, _, rotation, harmonics] = self.sizes().map(|size| size as usize);
@@ -142,6 +149,10 @@ impl SpzHeader {
         let mut made = FormatOutput::from(made);
         made.gaussians
             .set_antialiased(self.flags & ANTIALIASED != 0);
+        if is_z_up {
+            let turn = DQuat::from_rotation_x(std::f64::consts::FRAC_PI_2);
+            made.place(&Placement::new(DVec3::ZERO, turn, 1.0)?);
+        }
         Ok(made)
     }
 }
@@ -184,9 +195,17 @@ pub(super) fn signs([x, y, z]: [f64; 3]) -> [f64; 15] {
 /// The axes of .spz against ours, right, down and forward: right, up and back.
 pub(super) const RIGHT_UP_BACK: [f64; 3] = [1.0, -1.0, -1.0];
 
-/// The signs that records after the header or the Gaussians give the axes, if one does. What is no record is left alone:
-/// it is after everything that is needed.
-fn extensions(bytes: &[u8]) -> Result<Option<[f64; 3]>, String> {
+/// How a file's axes become ours, right, down and forward.
+#[derive(Clone, Copy)]
+struct Axes {
+    signs: [f64; 3],
+    /// Whether y goes along the view and z up or down: then a quarter turn about x, y to z, follows the signs.
+    is_z_up: bool,
+}
+
+/// The axes that records after the header or the Gaussians say, if one does. A rest that is no record is ignored: it is after
+/// everything that is needed.
+fn extensions(bytes: &[u8]) -> Result<Option<Axes>, String> {
     let what = "an extension";
     let (mut bytes, mut axes) = (Bytes(bytes), None);
     while bytes.0.len() >= 8 {
@@ -199,10 +218,19 @@ fn extensions(bytes: &[u8]) -> Result<Option<[f64; 3]>, String> {
             let sign = |plus: bool| if plus { 1.0 } else { -1.0 };
             axes = match record.u32(what)? {
                 0 => None, // not said
-                // Down or up in the second bit, left or right in the first, back or forward in the third.
-                way @ 1..=8 => {
+                // Left or right in the first bit, down or up in the second, back or forward in the third; in the fourth
+                // whether z is what goes down or up.
+                way @ 1..=16 => {
                     let way = way - 1;
-                    Some([sign(way & 1 == 1), sign(way & 2 == 0), sign(way & 4 == 4)])
+                    let [x, down, forward] =
+                        [sign(way & 1 == 1), sign(way & 2 == 0), sign(way & 4 == 4)];
+                    let is_z_up = way & 8 == 8;
+                    let signs = if is_z_up {
+                        [x, forward, -down]
+                    } else {
+                        [x, down, forward]
+                    };
+                    Some(Axes { signs, is_z_up })
                 }
                 other => {
                     return Err(format!(
@@ -218,9 +246,13 @@ fn extensions(bytes: &[u8]) -> Result<Option<[f64; 3]>, String> {
 
 /// Reads a whole file. The axes become ours where that is wanted; in glTF they are glTF's already.
 pub(super) fn read(bytes: &[u8], turn: bool) -> Result<FormatOutput, Failure> {
-    let axes = |said: Option<[f64; 3]>| match turn {
-        true => said.unwrap_or(RIGHT_UP_BACK),
-        false => [1.0; 3],
+    let as_they_are = |signs| Axes {
+        signs,
+        is_z_up: false,
+    };
+    let axes = |said: Option<Axes>| match turn {
+        true => said.unwrap_or(as_they_are(RIGHT_UP_BACK)),
+        false => as_they_are([1.0; 3]),
     };
     if bytes.starts_with(MAGIC) {
         let header = SpzHeader::read(bytes)?;
@@ -266,7 +298,7 @@ fn too_many(header: &SpzHeader) -> Failure {
     ))
 }
 
-fn said(header: &SpzHeader, after: &[u8]) -> Result<Option<[f64; 3]>, String> {
+fn said(header: &SpzHeader, after: &[u8]) -> Result<Option<Axes>, String> {
     match header.flags & HAS_EXTENSIONS {
         0 => Ok(None),
         _ => extensions(after),
@@ -295,7 +327,7 @@ fn split<'a>(header: &SpzHeader, mut payload: &'a [u8]) -> [&'a [u8]; 6] {
 fn read_streams(
     header: &SpzHeader,
     bytes: &[u8],
-    axes: impl Fn(Option<[f64; 3]>) -> [f64; 3],
+    axes: impl Fn(Option<Axes>) -> Axes,
 ) -> Result<FormatOutput, Failure> {
     if !inflate::may_become(bytes.len(), header.size()) {
         return Err(too_many(header));

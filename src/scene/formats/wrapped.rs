@@ -5,9 +5,9 @@ use super::sog::Archive;
 use super::{Failure, Format};
 use rara_base::counted::counted;
 
-/// What a stream may become, as a multiple of what it is: scenes are numbers without much order, of which gzip saves half.
+/// A stream may become so many times as large: scenes are numbers without much order, of which gzip saves half.
 const MOST: u64 = 64;
-/// Beside that, for scenes of a few Gaussians.
+/// A scene of a few Gaussians may have so many bytes more.
 const LEAST: u64 = 1 << 20;
 
 /// The scene that a file wraps, if it is one that wraps. A gzip stream may be a `.spz` too, and an archive a `.sog`.

@@ -157,7 +157,7 @@ impl<'a> Layout<'a> {
     }
 }
 
-/// What point clouds call a colour, in the order of its channels.
+/// The names that point clouds have for the channels of a colour, in their order.
 const COLOURS: [&str; 3] = ["red", "green", "blue"];
 
 /// The most of the colours that a file has: of integers the type's, of floats 1.

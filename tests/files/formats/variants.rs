@@ -50,10 +50,13 @@ fn spz_with_axes(axes: Option<u32>) -> Vec<u8> {
     bytes
 }
 
-/// By Niantic's names: left or right, down or up, back or forward, in the order of their numbers.
+/// The axes have Niantic's names: left or right, down or up, back or forward, in the order of their numbers.
 #[test]
 fn spz_says_which_way_its_axes_point() {
-    let names = ["LDB", "RDB", "LUB", "RUB", "LDF", "RDF", "LUF", "RUF"];
+    let names = [
+        "LDB", "RDB", "LUB", "RUB", "LDF", "RDF", "LUF", "RUF", "LBD", "RBD", "LBU", "RBU", "LFD",
+        "RFD", "LFU", "RFU",
+    ];
     let none = load_bytes(&spz_with_axes(None)).unwrap().gaussians;
     let own = load_bytes(&spz_with_axes(Some(6))).unwrap().gaussians; // RDF, which are ours
     near(&own.positions()[0].to_array(), &[1.0, 2.0, 3.0], 0.0);
@@ -69,23 +72,36 @@ fn spz_says_which_way_its_axes_point() {
     );
     for (number, name) in (1..).zip(names) {
         let found = load_bytes(&spz_with_axes(Some(number))).unwrap().gaussians;
-        let sign = |at: usize, ours: &str| if &name[at..=at] == ours { 1.0 } else { -1.0 };
-        let signs = Vec3::new(sign(0, "R"), sign(1, "D"), sign(2, "F"));
-        assert_eq!(found.positions()[0], own.positions()[0] * signs, "{name}");
-        let mirror = Mat3::from_diagonal(signs);
-        let expected = mirror * covariance(&own, 0) * mirror;
+        // The file's axes in ours, right, down and forward.
+        let axis = |letter: char| match letter {
+            'R' => Vec3::X,
+            'L' => -Vec3::X,
+            'D' => Vec3::Y,
+            'U' => -Vec3::Y,
+            'F' => Vec3::Z,
+            _ => -Vec3::Z,
+        };
+        let axes: Vec<Vec3> = name.chars().map(axis).collect();
+        let axes = Mat3::from_cols(axes[0], axes[1], axes[2]);
+        let expected = axes * own.positions()[0];
+        near(&found.positions()[0].to_array(), &expected.to_array(), 1e-6);
+        let expected = axes * covariance(&own, 0) * axes.transpose();
         assert!(covariance(&found, 0).abs_diff_eq(expected, 1e-4), "{name}");
-        let [x, y, z] = signs.to_array();
-        let signs = [1.0, y, z, x];
-        let expected: Vec<f32> = (own.sh_of(0).iter().enumerate())
-            .map(|(at, value)| value * signs[at / 3])
-            .collect();
-        near(found.sh_of(0), &expected, 0.0);
+        // Of degree 1 the coefficients of y, z and x are -, + and - times a vector.
+        let vector = |sh: &[f32], channel: usize| {
+            Vec3::new(-sh[9 + channel], -sh[3 + channel], sh[6 + channel])
+        };
+        near(&found.sh_of(0)[..3], &own.sh_of(0)[..3], 0.0);
+        for channel in 0..3 {
+            let expected = axes * vector(own.sh_of(0), channel);
+            let turned = vector(found.sh_of(0), channel);
+            near(&turned.to_array(), &expected.to_array(), 1e-6);
+        }
         if name == "RUB" {
             assert_eq!(found, none, "what says nothing is right, up and back");
         }
     }
-    assert!(load_bytes(&spz_with_axes(Some(9))).is_err());
+    assert!(load_bytes(&spz_with_axes(Some(17))).is_err());
 }
 
 /// Version 1 has halves for centres.

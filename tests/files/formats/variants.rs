@@ -359,6 +359,23 @@ fn gltf_of_integers_and_a_matrix() {
         error.contains("has an instance that scales unlike"),
         "{error}"
     );
+    // An older text of the extension has logarithms of the scales.
+    let with_scales = |scales: [f32; 3]| {
+        let mut changed = bytes.clone();
+        changed[20..32].copy_from_slice(&scales.map(f32::to_le_bytes).concat());
+        read(&document.replace(&base64(&bytes), &base64(&changed))).unwrap()
+    };
+    let plain = with_scales([0.5, 2.0, 4.0]);
+    let logarithms = with_scales([0.5_f32, 2.0, 4.0].map(f32::ln));
+    assert!(plain.report.is_clean());
+    assert!(
+        logarithms
+            .report
+            .to_string()
+            .contains("took the scales for logarithms")
+    );
+    let expected = covariance(&plain.gaussians, 0);
+    assert!(covariance(&logarithms.gaussians, 0).abs_diff_eq(expected, 1e-4));
     // What a node moves out of what single precision holds is dropped, and said.
     let far = document.replace(matrix, r#""translation":[1e39,0,0]"#);
     let found = read(&far).unwrap();

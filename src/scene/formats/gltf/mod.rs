@@ -281,7 +281,13 @@ fn read_primitive(
     if opacities.is_none() && colours.is_none() {
         return Err(Failure::Format(lacks(&own("OPACITY"))));
     }
-    let mut made = room(count, degree, ColumnForm::Plain)?.make(|index, row| {
+    // The text of the extension from January to April 2026 had logarithms, and today's has no negative scales.
+    let has_logarithms = (0..count).any(|at| (0..3).any(|axis| scales.at(at, axis) < 0.0));
+    let form = match has_logarithms {
+        true => ColumnForm::LogScales,
+        false => ColumnForm::Plain,
+    };
+    let mut made = room(count, degree, form)?.make(|index, row| {
         let index = index as u64;
         for axis in 0..3 {
             row[axis] = positions.at(index, axis);
@@ -309,6 +315,11 @@ fn read_primitive(
         Ok(())
     })?;
     notes.for_each(|note| made.report.note(note));
+    if has_logarithms {
+        made.report.note(
+            "took the scales for logarithms, as an older text of the extension has them, since some are negative".into(),
+        );
+    }
     Ok(made.into())
 }
 

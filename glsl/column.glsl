@@ -26,8 +26,8 @@ vec3 product(vec3 a0, vec3 a1, vec3 b0, vec3 b1) {
     return vec3(dot(a0, b0), dot(a0, b1) + dot(a1, b0), dot(a1, b1));
 }
 
-// The shares of a column, whose pixels without alpha need none. False when all are whole. Less than Phi(-PHI_ONE) is nothing, so
-// that tiles' lists may leave out what would add no more.
+// The shares of a column, whose pixels without alpha need none. False when all are whole. Less than Phi(-PHI_ONE) is
+// nothing, so that tiles' lists may leave out what would add no more.
 bool shares(float z[ROWS], float alpha[ROWS], out float share[ROWS]) {
     float low = 8.0;
     for (uint row = 0u; row < ROWS; row++) {
@@ -274,7 +274,8 @@ void chord_weights(Record record, uint flags, vec2 delta, vec2 pixel_centre, out
     }
 }
 
-// The weight of each pixel of a column; false when all are whole. `delta`, `uv` and `pixel_centre` are the first row's; v changes by `v_step` a row.
+// The weight of each pixel of a column; false when all are whole. `delta`, `uv` and `pixel_centre` are the first row's;
+// v changes by `v_step` a row.
 bool cut_weights(Record record, vec2 delta, vec2 uv, float v_step, vec2 pixel_centre, float alpha[ROWS],
                  out float weight[ROWS]) {
     uint flags = record_flags(record);

@@ -6,11 +6,11 @@
 //! the pictures, so they overlap a little, and one goes over into the other there.
 
 use std::f64::consts::{FRAC_PI_2, PI};
-use std::thread;
 
 use clap::Args;
 use glam::{DMat3, DVec3};
 use rara::{Camera, Picture, Projection};
+use rara_base::parallel::in_parallel;
 
 use super::failure::Failure;
 use super::views::NamedView;
@@ -116,18 +116,10 @@ impl Panorama {
     pub(super) fn assembled(self, faces: &[Picture]) -> Picture {
         let (width, height) = self.size();
         let mut panorama = Picture::filled(width, height, [0.0; 4]);
-        let threads = thread::available_parallelism().map_or(1, usize::from);
-        let rows = (height as usize).div_ceil(threads).max(1);
-        let bands = panorama.pixels.chunks_mut(rows * width as usize);
-        thread::scope(|scope| {
-            for (band, pixels) in bands.enumerate() {
-                let begin = band * rows;
-                scope.spawn(move || {
-                    for (index, pixel) in pixels.iter_mut().enumerate() {
-                        let at = (index % width as usize, begin + index / width as usize);
-                        *pixel = self.pixel(faces, at);
-                    }
-                });
+        let rows = panorama.pixels.chunks_mut(width as usize);
+        in_parallel(rows.enumerate(), |(y, row)| {
+            for (x, pixel) in row.iter_mut().enumerate() {
+                *pixel = self.pixel(faces, (x, y));
             }
         });
         panorama

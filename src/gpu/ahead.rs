@@ -140,7 +140,7 @@ fn threads() -> usize {
     if crate::faults::are_here() {
         return 1; // a device that fails on purpose does so on the test's own thread
     }
-    thread::available_parallelism().map_or(1, usize::from)
+    rara_base::parallel::threads()
 }
 
 impl Device {

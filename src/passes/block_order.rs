@@ -134,7 +134,7 @@ fn most_spanning_scale(scene: &Gaussians) -> f32 {
     2.0 * *scales.select_nth_unstable_by(middle, f32::total_cmp).1
 }
 
-/// What a Gaussian's place in the order and its block depend on.
+/// A Gaussian, as far as its place in the order and its block depend on it.
 struct Splat {
     position: Vec3,
     scale: Vec3,

@@ -1,12 +1,11 @@
 //! Stage `splat` blends the splats over their pixels, front to back.
 
-use std::sync::Mutex;
-
 use super::footprint::Footprint;
 use super::project::Splat;
 use super::real::Real;
 use super::view::ViewTransform;
 use rara_base::limits::{ALPHA_MAX, ALPHA_MIN_INVERSE};
+use rara_base::parallel::in_parallel;
 use rara_scene::picture::Picture;
 use rara_scene::settings::{Decay, Settings, Show};
 
@@ -33,24 +32,9 @@ pub fn splat<T: Real>(
     let mut picture = Picture::filled(width, height, [0.0; 4]);
     let pixels = picture.pixels.chunks_mut(BAND as usize * width as usize);
     let bands = (0..).step_by(BAND as usize).zip(&members).zip(pixels);
-    let queue = Mutex::new(bands);
-    let work = || {
-        // Bands do not share pixels, so the picture does not depend on which thread draws which.
-        loop {
-            let band = queue
-                .lock()
-                .expect("no thread panics while it holds the queue")
-                .next();
-            let Some(((top, splats), pixels)) = band else {
-                return;
-            };
-            draw_band(splats, top, pixels, width, settings);
-        }
-    };
-    let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    std::thread::scope(|scope| {
-        (1..threads).for_each(|_| drop(scope.spawn(work)));
-        work();
+    // Bands do not share pixels, so the picture does not depend on which thread draws which.
+    in_parallel(bands, |((top, splats), pixels)| {
+        draw_band(splats, top, pixels, width, settings);
     });
     picture
 }

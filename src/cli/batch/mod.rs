@@ -315,7 +315,7 @@ enum PictureState {
     Likewise,
 }
 
-/// What is done of each picture of a share, and how many were drawn otherwise.
+/// The state of each picture of a share, and how many were drawn otherwise.
 fn done(
     planned: &[JobPlan],
     share: &[(usize, usize)],

@@ -1,8 +1,9 @@
 //! Pictures on their way to their places: the next ones are drawn while threads encode and write those before.
 
-use std::num::NonZero;
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError, RwLockReadGuard, mpsc};
 use std::thread;
+
+use rara_base::parallel;
 
 use super::super::failure::Failure;
 use super::super::film::Film;
@@ -121,8 +122,7 @@ fn threads((width, height): (u32, u32), is_film: bool) -> usize {
     let bytes = 16 * u64::from(width) * u64::from(height);
     // Each thread has one picture, and another one waits for it.
     let most = WAITING / (2 * bytes).max(1);
-    let cores = thread::available_parallelism().map_or(1, NonZero::get);
-    let wanted = if is_film { 1 } else { cores };
+    let wanted = if is_film { 1 } else { parallel::threads() };
     wanted.min(most as usize)
 }
 

@@ -1,9 +1,8 @@
 //! How many fragments of a frame count, by the reference in single precision: their alpha is 1/255 or more, in a pixel
 //! that the splats before have not saturated.
 
-use std::sync::Mutex;
-
 use rara::{Camera, Clip, Decay, Gaussians, Settings};
+use rara_base::parallel::in_parallel;
 use rara_reference::{Splat, ViewTransform, classify, compact, project, sort, splat};
 
 /// Rows that a thread counts in at a time.
@@ -26,24 +25,11 @@ pub(super) fn count(scene: &Gaussians, camera: &Camera, settings: &Settings) -> 
             }
         }
     }
-    let queue = Mutex::new((0..height).step_by(BAND as usize).zip(&members));
-    let work = || {
-        let mut sum = 0;
-        loop {
-            let next = queue.lock().expect("no thread panics").next();
-            let Some((top, splats)) = next else {
-                return sum;
-            };
-            let bottom = height.min(top + BAND);
-            sum += in_band(splats, top..bottom, width, settings);
-        }
-    };
-    let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    std::thread::scope(|scope| {
-        let threads: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
-        let counts = threads.into_iter().map(|thread| thread.join());
-        counts.map(|count| count.expect("no thread panics")).sum()
-    })
+    let bands = (0..height).step_by(BAND as usize).zip(&members);
+    let counts = in_parallel(bands, |(top, splats)| {
+        in_band(splats, top..height.min(top + BAND), width, settings)
+    });
+    counts.into_iter().sum()
 }
 
 /// Counts those in some rows, of splats that are sorted front to back.

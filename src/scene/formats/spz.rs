@@ -199,7 +199,7 @@ pub(super) const RIGHT_UP_BACK: [f64; 3] = [1.0, -1.0, -1.0];
 #[derive(Clone, Copy)]
 struct Axes {
     signs: [f64; 3],
-    /// Whether y goes along the view and z up or down: then a quarter turn about x, y to z, follows the signs.
+    /// True where y goes along the view and z up or down: then a quarter turn about x, y to z, follows the signs.
     is_z_up: bool,
 }
 

@@ -6,9 +6,8 @@
 #include "band.glsl"
 #include "region/box_side.glsl"
 
-// Contour of 1/255 of an opaque splat, standard deviations, and what the low-pass adds to a splat's deviation at most, px.
+// Contour of 1/255 of an opaque splat, standard deviations.
 const float EXTENT_MAX = 3.33;
-const float LOW_PASS_DEVIATION = 0.548;
 
 // The box around the centres, a little wider than exact.
 vec3 block_middle(Block block) {
@@ -49,12 +48,12 @@ vec2 range_over(vec3 relative, vec3 half_box, vec3 row, float a, float b) {
 }
 
 // The side along one axis of the picture: SIDE_CULLED where no splat reaches it, SIDE_VISIBLE where all centres are half a
-// pixel inside, else SIDE_CUTOFF. A splat at x, w spans f x/w + c +- K (f sigma/w sqrt(1 + s^2) + 0.55), with s the slope
+// pixel inside, else SIDE_CUTOFF. A splat at x, w spans f x/w + c +- K (f sigma/w sqrt(1 + s^2) + sqrt(L)), with s the slope
 // of its Jacobian, which an orthographic view has none of; times w all of this is linear.
 uint axis_side(vec3 relative, vec3 half_box, vec3 row, float focal, float centre, float size, vec2 slopes, float reach) {
     float steepest = max(abs(slopes.x), abs(slopes.y));
     float span = 1.001 * focal * reach * (is_orthographic() ? 1.0 : sqrt(1.0 + steepest * steepest));
-    float edge = EXTENT_MAX * LOW_PASS_DEVIATION + 1.0;
+    float edge = EXTENT_MAX * sqrt(LAYER.content.low_pass) + 1.0;
     vec2 before = range_over(relative, half_box, row, focal, centre + edge);
     vec2 behind = range_over(relative, half_box, row, focal, centre - size - edge);
     if (before.x + before.y + span < 0.0 || behind.x - behind.y - span > 0.0) {
@@ -65,12 +64,12 @@ uint axis_side(vec3 relative, vec3 half_box, vec3 row, float focal, float centre
     return first.x - first.y >= 0.0 && last.x + last.y <= 0.0 ? SIDE_VISIBLE : SIDE_CUTOFF;
 }
 
-// True when what makes up for the low-pass leaves each Gaussian of a block in view at least OPACITY_SPANNING. The gradients
-// are B = J M, with J J^T >= g^2 and g the pixels a unit at the block's farthest depth: so B's singular values are at least
-// g times the middle and the least deviation, and the factor, a product of l / (l + LOW_PASS) over their squares l, grows
+// True when what makes up for the low-pass L leaves each Gaussian of a block in view opaque enough to span a pixel. The
+// gradients are B = J M, with J J^T >= g^2 and g the pixels a unit at the block's farthest depth: so B's singular values are
+// at least g times the middle and the least deviation, and the factor, a product of l / (l + L) over their squares l, grows
 // with g. `spanning_scale` is the g from which it is large enough, by a margin for single precision: that finds |b1 x b2|,
-// which is at least OPACITY_SPANNING sqrt(LOW_PASS) |b|, to 1e-6 of the product of the largest deviations, so to two
-// hundredths where these are at most MOST_COMPENSATED.
+// which is at least .0032 |b| whatever L is (opacity_spanning in src/passes/block_order.rs), to 1e-6 of the product of the
+// largest deviations, so to two hundredths where these are at most MOST_COMPENSATED.
 bool compensated_block_spans(Block block, float nearest, float farthest) {
     const float MOST_COMPENSATED = 64.0; // px
     vec4 bounds = abs(VIEW.slope_bounds);

@@ -228,7 +228,7 @@ void main() {
     CurveSource source;
     source.h0 = vec4(b1 * scale, 0.0);
     source.h1 = vec4(b2 * scale, scale);
-    source.h2 = vec4(lean * scale, LOW_PASS * scale * scale);
+    source.h2 = vec4(lean * scale, LAYER.content.low_pass * scale * scale);
 
     // A switch of zero asks for the exact form itself.
     if (FRAME.region.mode == MODE_EXACT && FRAME.weight.form == FORM_AUTO && FRAME.weight.beam_switch > 0.0 && count == 1u && !front) {

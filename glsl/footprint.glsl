@@ -22,7 +22,7 @@ struct Footprint {
     vec3 b1, b2; // the gradients on the screen, times scale
     vec2 slope; // x/w and y/w at which they were evaluated
     float scale; // 1 / max(1, |b|): keeps every product below in range
-    float low_pass; // LOW_PASS scale^2
+    float low_pass; // the layer's low-pass times scale^2
     float xx, xy, yy, det; // 2D covariance and determinant, times scale^2 and scale^4
     vec2 screen_centre; // px
     bool clamped; // whether the slope was clamped
@@ -103,7 +103,7 @@ Footprint footprint(Gaussian gaussian) {
     f.scale = 1.0 / max(1.0, max(largest(f.b1), largest(f.b2)));
     f.b1 *= f.scale;
     f.b2 *= f.scale;
-    f.low_pass = LOW_PASS * f.scale * f.scale;
+    f.low_pass = LAYER.content.low_pass * f.scale * f.scale;
     float n1 = dot(f.b1, f.b1);
     float n2 = dot(f.b2, f.b2);
     vec3 c = cross(f.b1, f.b2);

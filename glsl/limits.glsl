@@ -2,9 +2,7 @@
 #ifndef RARA_LIMITS
 #define RARA_LIMITS
 
-// Low-pass that 3DGS adds to the projected covariance's diagonal, px^2. Scenes are trained with it.
-const float LOW_PASS = 0.3;
-// Least square of the factor by which the opacity of antialiased Gaussians makes up for that. Scenes are trained with it.
+// Least square of the factor by which the opacity of antialiased Gaussians makes up for the low-pass. Scenes are trained with it.
 const float COMPENSATION_SQUARE_MIN = 0.000025;
 // Centres nearer than this along the view axis are culled where a camera has no near cut of its own, the scene's units.
 const float NEAR_Z = 0.2;
@@ -32,9 +30,6 @@ const uint BLOCK_SIZE = 256u;
 const uint BLOCK_GROUP_SIZE = 64u;
 // Words that a reclipped frame keeps of a block: see reclip.glsl.
 const uint RECLIP_WORDS = 32u;
-// Opacity from which a splat's bounding box spans a pixel whatever the projection: its contour of 1/255 is then at 0.92
-// deviations or more, and the low-pass alone makes a deviation 0.55 px.
-const float OPACITY_SPANNING = 0.006;
 // Standard deviation on the screen up to which single precision surely finds a splat's conic, px.
 const float DRAWABLE_DEVIATION = 1e6;
 // Splats a workgroup of project and cutoff handles.

@@ -99,7 +99,8 @@ struct LayerContent {
     float opacity; // what its Gaussians' opacities are multiplied by, 0 to 1
     uint visible; // 0: nothing of it is drawn
     uint antialiased; // 1: its splats' opacities make up for the low-pass
-    uint pad[3]; // unused
+    float low_pass; // what is added to its footprints' covariances, px^2
+    uint pad[2]; // unused
 };
 
 // The region of a layer that is kept.

@@ -36,7 +36,8 @@ pub mod gpu {
 pub mod scene {
     pub use rara_scene::{
         Attribute, Bounds, Comparison, GaussianArrays, Gaussians, Kind, Layer, LayerState, Part,
-        Predicate, Property, Scene, cross_section, extent_along, generate, sh_coefficients,
+        Predicate, Property, Scene, Training, cross_section, extent_along, generate,
+        sh_coefficients,
     };
     #[cfg(feature = "formats")]
     pub use rara_scene::{

@@ -222,8 +222,7 @@ fn fates(region: &Region<'_>, count: usize, children: usize) -> Vec<Fate> {
 fn collect(gaussians: &Gaussians, fates: &[Fate]) -> BakedGaussians {
     let mut baked = BakedGaussians::default();
     baked.gaussians.set_sh_degree(gaussians.sh_degree());
-    let antialiased = gaussians.is_antialiased();
-    baked.gaussians.set_antialiased(antialiased);
+    baked.gaussians.set_trained_as(gaussians);
     let counts = &mut baked.counts;
     for (index, fate) in fates.iter().enumerate() {
         let children = match fate {

@@ -1,9 +1,7 @@
 //! Every number that host and shaders share, each here and nowhere else. `glsl/limits.glsl` is made of this file by
 //! tools/shaders, and a build in the repository checks that it is the same.
 
-/// Low-pass that 3DGS adds to the projected covariance's diagonal, px^2. Scenes are trained with it.
-pub const LOW_PASS: f32 = 0.3;
-/// Least square of the factor by which the opacity of antialiased Gaussians makes up for that. Scenes are trained with it.
+/// Least square of the factor by which the opacity of antialiased Gaussians makes up for the low-pass. Scenes are trained with it.
 pub const COMPENSATION_SQUARE_MIN: f32 = 0.000025;
 /// Centres nearer than this along the view axis are culled where a camera has no near cut of its own, the scene's units.
 pub const NEAR_Z: f32 = 0.2;
@@ -31,9 +29,6 @@ pub const BLOCK_SIZE: u32 = 256;
 pub const BLOCK_GROUP_SIZE: u32 = 64;
 /// Words that a reclipped frame keeps of a block: see reclip.glsl.
 pub const RECLIP_WORDS: u32 = 32;
-/// Opacity from which a splat's bounding box spans a pixel whatever the projection: its contour of 1/255 is then at 0.92
-/// deviations or more, and the low-pass alone makes a deviation 0.55 px.
-pub const OPACITY_SPANNING: f32 = 0.006;
 /// Standard deviation on the screen up to which single precision surely finds a splat's conic, px.
 pub const DRAWABLE_DEVIATION: f32 = 1e6;
 /// Splats a workgroup of project and cutoff handles.

@@ -2,6 +2,7 @@
 
 use rara::ash::vk;
 use rara::glam::{Quat, Vec3};
+use rara::scene::Training;
 use rara::{Error, GaussianArrays, Gaussians, Result};
 
 use crate::boundary::{RaraResult, Versioned, guard, invalid, read, versioned, write};
@@ -43,6 +44,8 @@ pub struct RaraGaussianArrays {
     pub sh_stride: usize,
     /// Whether they were trained antialiased: see rara_gaussians_set_antialiased. Default: false.
     pub antialiased: vk::Bool32,
+    /// The low-pass that they were trained with, square pixels: see rara_gaussians_set_low_pass. Default: 0, which is 0.3.
+    pub low_pass: f32,
 }
 
 versioned!(RaraGaussianArrays);
@@ -100,7 +103,12 @@ impl RaraGaussianArrays {
             opacities: opacities.copied(1, 1, |to, v| to.push(v[0]))?,
             sh_degree: self.sh_degree,
             sh: sh.copied(floats, floats, |to, v| to.extend_from_slice(v))?,
-            antialiased: self.antialiased != vk::FALSE,
+            training: Training::default()
+                .antialiased(self.antialiased != vk::FALSE)
+                .low_pass(match self.low_pass {
+                    0.0 => Training::default().low_pass,
+                    low_pass => low_pass,
+                }),
         })
     }
 }

@@ -51,6 +51,8 @@ pub struct RaraGaussiansInfo {
     pub bounds_max: [f64; 3],
     /// Whether they are drawn antialiased: see rara_gaussians_set_antialiased.
     pub antialiased: vk::Bool32,
+    /// The low-pass that they are drawn with, square pixels: see rara_gaussians_set_low_pass.
+    pub low_pass: f32,
 }
 
 versioned!(RaraGaussiansInfo);
@@ -100,6 +102,21 @@ pub unsafe extern "C" fn rara_gaussians_set_antialiased(
     })
 }
 
+/// Says with which low-pass Gaussians were trained, square pixels, 0.01 to 10: 0.3 by 3DGS, gsplat and nerfstudio, 0.1 by
+/// Mip-Splatting and by Brush where that trains antialiased. It is added to the variance of each footprint along either axis of
+/// the picture. Files that say so are loaded so. It holds for a whole scene; what is appended to one is drawn like it. A scene
+/// that is on the device already stays as it is.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_gaussians_set_low_pass(
+    gaussians: *mut RaraGaussians,
+    low_pass: f32,
+) -> RaraResult {
+    guard(|| {
+        let gaussians = &mut alone(gaussians, "gaussians")?.gaussians;
+        gaussians.set_training(gaussians.training().low_pass(low_pass))
+    })
+}
+
 /// Describes a scene. `info_size` is sizeof *info.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_gaussians_info(
@@ -122,6 +139,7 @@ pub unsafe extern "C" fn rara_gaussians_info(
             bounds_min: bounds.min.into(),
             bounds_max: bounds.max.into(),
             antialiased: gaussians.is_antialiased().into(),
+            low_pass: gaussians.low_pass(),
         };
         write(info, info_size, &found, "info")
     })

@@ -284,7 +284,9 @@ fn scenes() {
         assert_eq!(info.antialiased, 0);
         assert_eq!(rara_gaussians_set_antialiased(scene, 1), RARA_OK);
         assert_eq!(rara_gaussians_info(scene, &mut info, size), RARA_OK);
-        assert_eq!(info.antialiased, 1);
+        assert_eq!((info.antialiased, info.low_pass), (1, 0.3));
+        assert_eq!(rara_gaussians_set_low_pass(scene, 0.1), RARA_OK);
+        assert_eq!(rara_gaussians_set_low_pass(scene, 0.0), RARA_ERROR_INVALID);
         let mut camera: RaraCamera = std::mem::zeroed();
         let framed = rara_camera_frame(
             scene,

@@ -10,7 +10,6 @@ use rara::{
 };
 use serde::Serialize;
 
-use super::antialiasing;
 use super::clip::{ClipArgs, Regions};
 use super::compare::Measures;
 use super::failure::Failure;
@@ -21,6 +20,7 @@ use super::scene_layers::SceneLayers;
 use super::scenes::SceneArgs;
 use super::select::{self, LayerRemains};
 use super::settings::DeviceArgs;
+use super::trained;
 use super::values::{self, name};
 
 /// Write a scene that shows a cut in any viewer
@@ -119,7 +119,7 @@ impl Bake {
         let clip = clip.clip(&loaded.scene())?;
         let is_merged = !self.output.to_string_lossy().contains("{}");
         if is_merged {
-            antialiasing::check_alike(&loaded)?;
+            trained::check_alike(&loaded)?;
         }
         // What --layer-clip says of a layer may also be that nothing cuts it.
         if clip.is_everything() && !loaded.has_clips() {

@@ -8,14 +8,13 @@ use rara::scene::{self, Part};
 use rara::{Clip, LayerState, Placement};
 use serde::Serialize;
 
-use super::antialiasing;
 use super::clip::ClipArgs;
 use super::failure::Failure;
 use super::output::{self, counted, say};
 use super::scene_layers::LoadedLayer;
 use super::scenes::SceneArgs;
 use super::select::{self, LayerRemains, Numbers};
-use super::values;
+use super::{trained, values};
 
 /// Write a scene in another format
 #[derive(Debug, Args)]
@@ -96,7 +95,7 @@ impl Convert {
         let mut loaded = self.scenes.load()?;
         clip.settle(&mut loaded)?;
         let clip = clip.clip(&loaded.scene())?;
-        antialiasing::check_alike(&loaded)?;
+        trained::check_alike(&loaded)?;
         let mut document = ConvertJson {
             file: self.output.clone(),
             format: format.to_string(),
@@ -126,10 +125,9 @@ impl Convert {
             whole.set_sh_degree(degree);
         }
         document.clamped = scene::save(&self.output, &whole)?;
-        if whole.is_antialiased() && format == scene::Format::Gltf {
-            let note = "glTF cannot say that the scene was trained antialiased; draw the file with --antialiasing on";
+        if let Some(note) = trained::lost(format, whole.training()) {
             say(format_args!("warning: {note}"));
-            document.notes.push(note.into());
+            document.notes.push(note);
         }
         document.written = whole.len();
         document.sh_degree = whole.sh_degree();

@@ -82,6 +82,8 @@ struct LayerFacts {
     visible: bool,
     /// Whether it was trained antialiased and is drawn so.
     antialiased: bool,
+    /// The low-pass that it was trained with, px^2.
+    low_pass: f32,
     clipped: bool,
     /// What else there is to say of it, where it is one of several.
     #[serde(rename = "statistics", skip_serializing_if = "Option::is_none")]
@@ -99,6 +101,7 @@ impl LayerFacts {
             opacity: layer.state.opacity,
             visible: layer.state.visible,
             antialiased: layer.gaussians.is_antialiased(),
+            low_pass: layer.gaussians.low_pass(),
             clipped: layer.clip.is_some(),
             facts: None,
         }
@@ -241,8 +244,9 @@ fn table(document: &InfoJson) -> Vec<String> {
         } else {
             ""
         };
+        let low_pass = layer.low_pass;
         lines.push(format!(
-            "  layer        {} ({}): {}, opacity {}{trained}{state}",
+            "  layer        {} ({}): {}, opacity {}{trained}, low-pass {low_pass}{state}",
             layer.name,
             layer.format,
             grouped(layer.gaussians as u64),
@@ -253,6 +257,7 @@ fn table(document: &InfoJson) -> Vec<String> {
         lines.push(format!("format         {}", layer.format));
         let trained = if layer.antialiased { "yes" } else { "no" };
         lines.push(format!("antialiased    {trained}"));
+        lines.push(format!("low-pass       {} px^2", layer.low_pass));
     }
     lines.push(format!("SH degree      {}", document.sh_degree));
     lines.push(format!("repaired       {}", grouped(document.repaired)));

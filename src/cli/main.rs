@@ -5,7 +5,6 @@
 #![deny(unsafe_code)] // only the process's environment and signals need it
 
 mod ablate;
-mod antialiasing;
 mod aspect;
 mod axis;
 mod bake;
@@ -67,6 +66,7 @@ mod stress;
 mod study;
 mod sweep;
 mod times;
+mod trained;
 mod training;
 mod values;
 #[cfg(feature = "view")]

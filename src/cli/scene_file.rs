@@ -23,6 +23,8 @@ pub(super) struct LayerEntry {
     pub(super) state: LayerState,
     /// Whether it was trained antialiased; none where its file says that.
     pub(super) antialiased: Option<bool>,
+    /// The low-pass that it was trained with; none where its file says that.
+    pub(super) low_pass: Option<f32>,
     pub(super) clip: Option<LayerClip<Region>>,
     /// The layers that take their splats from it, in the order in which they do so.
     pub(super) selected: Vec<Selection>,
@@ -222,6 +224,7 @@ struct LayerRecord {
     opacity: Option<f32>,
     visible: Option<bool>,
     antialiased: Option<bool>,
+    low_pass: Option<f32>,
     clip: Option<Expression>,
     /// An expression as text; `whole` keeps everything.
     clip_expr: Option<String>,
@@ -316,6 +319,7 @@ pub(super) fn read(path: &Path) -> Result<Vec<LayerEntry>> {
             path,
             state,
             antialiased: entry.antialiased,
+            low_pass: entry.low_pass,
             clip,
             selected: Vec::new(),
         };

@@ -10,7 +10,8 @@ use super::output::say;
 use super::reading::{self, Watch};
 use super::scene_file::{self, LayerEntry};
 use super::scene_layers::SceneLayers;
-use super::{antialiasing, layer_clip, place, select, training, values};
+use super::trained::TrainedOptions;
+use super::{layer_clip, place, select, trained, training, values};
 use rara::scene::Format;
 
 fn files() -> String {
@@ -19,7 +20,7 @@ fn files() -> String {
          which the last iteration counts. Several files are the layers of one scene. A layer has the name of its file, or a \
          name given as NAME=FILE. A .json file lists layers: \
          {{\"layers\":[{{\"path\":\"skin.ply\",\"name\":\"skin\",\"opacity\":0.5,\"visible\":true, \
-         \"antialiased\":true,\"position\":[x,y,z],\"rotation\":[w,x,y,z],\"scale\":s,\"clip\":{{...}} or \
+         \"antialiased\":true,\"low_pass\":0.3,\"position\":[x,y,z],\"rotation\":[w,x,y,z],\"scale\":s,\"clip\":{{...}} or \
          \"clip_expr\":\"...\", \"select\":[{{\"name\":\"vessels\",\"where\":\"label in 3,4\"}}]}}]}}",
         Format::readable()
     )
@@ -49,13 +50,8 @@ pub(super) struct SceneArgs {
     /// otherwise.
     #[arg(long, value_name = "NAME=EXPRESSION")]
     layer_clip: Vec<String>,
-    /// Whether the scene was trained antialiased: on, off or auto
-    ///
-    /// Splats that the low-pass makes larger than they are then get no brighter, as scenes need it that were
-    /// trained antialiased (3DGS --antialiasing, gsplat, Mip-Splatting). auto, the default, goes by what the files
-    /// and the training's settings beside them say. NAME=on says it of one layer (repeatable).
-    #[arg(long, value_name = "on|off|auto")]
-    antialiasing: Vec<String>,
+    #[command(flatten)]
+    trained: TrainedOptions,
     /// Place a layer: move:X,Y,Z turn:X,Y,Z,DEGREES scale:S (repeatable)
     ///
     /// The place replaces what a list says of the layer. rotation:W,X,Y,Z is a quaternion in place of turn. Blanks
@@ -97,13 +93,15 @@ impl SceneArgs {
     /// The flags that say what the layers are before anything changes them, with what was typed behind each.
     #[cfg(feature = "view")]
     pub(super) fn typed(&self) -> Vec<(&'static str, &str)> {
+        let [antialiasing, low_pass] = self.trained.texts();
         let all = [
-            ("--select", &self.select),
-            ("--antialiasing", &self.antialiasing),
+            ("--select", &self.select[..]),
+            antialiasing,
+            low_pass,
             ("--place", &self.place),
         ];
-        let all = all.iter();
-        all.flat_map(|(flag, texts)| texts.iter().map(|text| (*flag, text.as_str())))
+        let all = all.into_iter();
+        all.flat_map(|(flag, texts)| texts.iter().map(move |text| (flag, text.as_str())))
             .collect()
     }
 
@@ -118,7 +116,7 @@ impl SceneArgs {
 
     /// Reads the files, and tells how far it has come.
     pub(super) fn load_watched(&self, watch: Watch<'_>) -> Result<SceneLayers, Failure> {
-        let mut loaded = load(self.entries()?, &self.antialiasing, watch)?;
+        let mut loaded = load(self.entries()?, &self.trained, watch)?;
         place::apply(&self.place, &mut loaded)?;
         let flags = [
             ("--hide", &self.hide, false),
@@ -139,7 +137,7 @@ impl SceneArgs {
 
 /// Reads the layers that these files are or list, and tells how far it has come.
 pub(super) fn load_files(paths: &[PathBuf], watch: Watch<'_>) -> Result<SceneLayers, Failure> {
-    load(entries(paths)?, &[], watch)
+    load(entries(paths)?, &TrainedOptions::default(), watch)
 }
 
 fn entries(files: &[PathBuf]) -> Result<Vec<LayerEntry>, Failure> {
@@ -150,10 +148,10 @@ fn entries(files: &[PathBuf]) -> Result<Vec<LayerEntry>, Failure> {
     Ok(entries)
 }
 
-/// Reads the files in order, and prints what had to be repaired. `flags` are those of `--antialiasing`.
+/// Reads the files in order, and prints what had to be repaired. `flags` say how layers were trained.
 fn load(
     entries: Vec<LayerEntry>,
-    flags: &[String],
+    flags: &TrainedOptions,
     watch: Watch<'_>,
 ) -> Result<SceneLayers, Failure> {
     let mut all = SceneLayers::default();
@@ -170,11 +168,13 @@ fn load(
     let mut before = 0;
     for ((entry, mut loaded, properties), settled) in read.into_iter().zip(settled) {
         let path = &entry.path;
-        if let Some(antialiased) = entry.antialiased {
-            loaded.gaussians.set_antialiased(antialiased);
-        }
+        let said = loaded.gaussians.training();
+        let training = said.antialiased(entry.antialiased.unwrap_or(said.antialiased));
+        let training = training.low_pass(entry.low_pass.unwrap_or(said.low_pass));
+        let set = loaded.gaussians.set_training(training);
+        set.map_err(|error| rara::Error::Invalid(format!("the layer '{}': {error}", entry.name)))?;
         let is_said = entry.antialiased.or(loaded.antialiased).is_some();
-        let trained = (!is_said).then(|| antialiasing::trained(path)).flatten();
+        let trained = (!is_said).then(|| trained::trained(path)).flatten();
         all.repaired += loaded.report.repaired;
         all.dropped += loaded.report.dropped;
         let lines = loaded.report.lines();
@@ -192,7 +192,7 @@ fn load(
         }
         before = before.saturating_add(count);
     }
-    antialiasing::apply(flags, &mut all)?;
+    flags.apply(&mut all)?;
     for note in &all.notes {
         say(format_args!("note: {note}"));
     }

@@ -136,9 +136,11 @@ pub(super) fn joined(layers: Vec<LayerRemains>) -> Gaussians {
     places.sort_unstable();
     let degree = layers.iter().map(|layer| layer.gaussians.sh_degree()).max();
     joined.set_sh_degree(degree.unwrap_or(0));
-    // All are alike: see antialiasing::check_alike.
+    // All are alike: see trained::check_alike.
     let mut all = layers.iter().map(|layer| &layer.gaussians);
-    joined.set_antialiased(all.any(|layer| !layer.is_empty() && layer.is_antialiased()));
+    if let Some(first) = all.find(|layer| !layer.is_empty()) {
+        joined.set_trained_as(first);
+    }
     let mut sh = vec![0.0; 3 * joined.sh_coefficients()];
     for (_, at, index) in places {
         let from = &layers[at].gaussians;

@@ -9,7 +9,7 @@ use glam::Vec3;
 use crate::types::Block;
 use rara_base::limits;
 use rara_base::parallel::{in_parallel, threads};
-use rara_scene::Gaussians;
+use rara_scene::{Gaussians, Training};
 
 /// Bits of the places that a curve distinguishes along each axis: those of three axes and the kind are a key of 32.
 const BITS: u32 = 10;
@@ -139,7 +139,7 @@ struct Splat {
     position: Vec3,
     scale: Vec3,
     opacity: f32,
-    is_antialiased: bool,
+    training: Training,
 }
 
 impl Splat {
@@ -149,26 +149,26 @@ impl Splat {
             position: scene.positions()[index],
             scale: scene.scales()[index],
             opacity: scene.opacities()[index],
-            is_antialiased: scene.is_antialiased(),
+            training: scene.training(),
         }
     }
 
-    /// Pixels a unit of the layer from which an antialiased splat keeps [`limits::OPACITY_SPANNING`], whatever direction it is
+    /// Pixels a unit of the layer from which an antialiased splat keeps an [`opacity_spanning`](Self::opacity_spanning), whatever direction it is
     /// seen from; infinite where none is enough, and zero of splats that are not antialiased. With the middle and the least
     /// deviation a and b and `x` the square of the scale, its opacity is multiplied by at least the root of
     /// `a²x / (a²x + L) · b²x / (b²x + L)` (glsl/block.glsl). That this is the share that is needed is a quadratic equation in x.
     fn spanning_scale(&self) -> f32 {
         /// Single precision may find the opacity too small by this factor.
         const MARGIN: f64 = 1.05;
-        if !self.is_antialiased {
+        if !self.training.antialiased {
             return 0.0;
         }
-        let least = MARGIN * f64::from(limits::OPACITY_SPANNING);
+        let least = MARGIN * f64::from(self.opacity_spanning());
         let share = (least / f64::from(self.opacity)).powi(2);
         let mut deviations = self.scale.to_array();
         deviations.sort_unstable_by(f32::total_cmp);
         let [b, a, _] = deviations.map(|deviation| f64::from(deviation).powi(2));
-        let low_pass = f64::from(limits::LOW_PASS);
+        let low_pass = f64::from(self.training.low_pass);
         let half = 0.5 * share * low_pass * (a + b);
         let rest = (1.0 - share) * a * b;
         let square = (half + (half * half + rest * share * low_pass * low_pass).sqrt()) / rest;
@@ -186,8 +186,16 @@ impl Splat {
         extent * self.scale.max_element()
     }
 
+    /// The opacity from which a splat's bounding box spans a pixel whatever the projection: half a pixel is then within the
+    /// contour of 1/255 of what has the low-pass alone for a variance. Single precision may find that a little smaller.
+    fn opacity_spanning(&self) -> f32 {
+        const MARGIN: f32 = 1.01;
+        let most = 0.5 * 0.5 / self.training.low_pass;
+        MARGIN * limits::ALPHA_MIN * (0.5 * MARGIN * most).exp()
+    }
+
     fn is_spanning(&self) -> bool {
-        self.opacity >= limits::OPACITY_SPANNING
+        self.opacity >= self.opacity_spanning()
     }
 }
 
@@ -240,7 +248,7 @@ mod tests {
             opacities: (0..count).map(|_| next()).collect(),
             sh_degree: 0,
             sh: vec![0.0; 3 * count],
-            antialiased: false,
+            training: Training::default(),
         };
         Gaussians::new(arrays).expect("arrays that fit")
     }
@@ -312,9 +320,11 @@ mod tests {
             scene.scales_mut()[index] = Vec3::from_array([0; 3].map(|_| 0.1 * next().powi(4)));
             scene.opacities_mut()[index] = 0.01 + 0.99 * next();
         }
-        scene.set_antialiased(true);
         let mut fainter = 0;
         for index in 0..count {
+            let low_pass = [0.3, 0.1, 2.0][index % 3];
+            let training = Training::default().antialiased(true).low_pass(low_pass);
+            scene.set_training(training).expect("can be drawn");
             let scale = f64::from(Splat::of(&scene, index as u32).spanning_scale());
             for (axis, share) in [0, 1, 2]
                 .into_iter()
@@ -325,7 +335,8 @@ mod tests {
                 let camera = camera.expect("a view").fx(share * scale).fy(share * scale);
                 let view = ViewTransform::<f64>::new(&camera);
                 let opacity = Footprint::new(&scene, index, &view).map_or(0.0, |f| f.opacity);
-                let spans = opacity >= f64::from(limits::OPACITY_SPANNING);
+                let spans =
+                    opacity >= f64::from(Splat::of(&scene, index as u32).opacity_spanning());
                 assert!(
                     spans || share < 1.0,
                     "{index}: {opacity} at {scale} px a unit"

@@ -38,7 +38,8 @@ impl Layers {
                     gaussian_end: layer.gaussian_end(),
                     opacity: layer.state.opacity,
                     visible: layer.is_visible().into(),
-                    antialiased: layer.antialiased.into(),
+                    antialiased: layer.training.antialiased.into(),
+                    low_pass: layer.training.low_pass,
                     ..bytemuck::Zeroable::zeroed()
                 },
                 ..bytemuck::Zeroable::zeroed()

@@ -114,6 +114,8 @@ struct Eye<'a> {
     /// From the layer's axes and units to the camera's axes and the scene's units.
     turn: DMat3,
     opacity: f64,
+    /// Square pixels.
+    low_pass: f64,
 }
 
 impl<'a> Eye<'a> {
@@ -126,6 +128,7 @@ impl<'a> Eye<'a> {
             position: own.eye,
             turn: own.rotation * placement.scale(),
             opacity: layer.state.opacity.into(),
+            low_pass: layer.training.low_pass.into(),
         }
     }
 
@@ -159,8 +162,7 @@ impl<'a> Eye<'a> {
             let by = |axis: DVec3| focal[at] / w * (axis[at] - leans * clamped * axis.z);
             DVec3::from(axes.map(by))
         });
-        let low_pass = f64::from(limits::LOW_PASS);
-        let [xx, yy] = moved.map(|moved| moved.length_squared() + low_pass);
+        let [xx, yy] = moved.map(|moved| moved.length_squared() + self.low_pass);
         let xy = moved[0].dot(moved[1]);
         // Out to so many deviations, squared, the splat counts.
         let extent = 2.0 * brightness.ln();

@@ -13,7 +13,7 @@ use rara_base::limits;
 use rara_scene::clip::Clip;
 use rara_scene::precision::ShFormat;
 use rara_scene::{
-    Bounds, GaussianArrays, Gaussians, Layer, LayerState, Numbers, Scene, sh_coefficients,
+    Bounds, GaussianArrays, Gaussians, Layer, LayerState, Numbers, Scene, Training, sh_coefficients,
 };
 
 /// A layer of a scene that is on the device.
@@ -28,8 +28,8 @@ pub struct SceneLayer {
     box_around: [Vec3; 2],
     /// The same of the set that the layer is a part of, or its own: what depends on it is alike in all parts of a set.
     pub(super) corners: [Vec3; 2],
-    /// Whether its Gaussians were trained antialiased.
-    pub(super) antialiased: bool,
+    /// How its Gaussians were trained.
+    pub(super) training: Training,
     pub(super) state: LayerState,
     pub(super) clip: Option<Clip>,
 }
@@ -44,7 +44,7 @@ impl SceneLayer {
             first_block,
             box_around: corners,
             corners,
-            antialiased: layer.gaussians().is_antialiased(),
+            training: layer.gaussians().training(),
             state: layer.state(),
             clip: layer.clip().cloned(),
         }
@@ -60,9 +60,9 @@ impl SceneLayer {
         self.gaussians
     }
 
-    /// True where they are drawn [antialiased](Gaussians::is_antialiased).
-    pub fn is_antialiased(&self) -> bool {
-        self.antialiased
+    /// How they were trained, which is how they are drawn.
+    pub fn training(&self) -> Training {
+        self.training
     }
 
     /// How the next frame that is configured shows it.

@@ -2,6 +2,7 @@
 
 use super::chord::missed_share;
 use super::exact::tail_ratio;
+use super::footprint::Gradients;
 use super::real::{Real, Vec3};
 use super::region::{Combination, HalfSpace, Sight, Symmetric, UnitSurface};
 use rara_scene::settings::Miss;
@@ -9,8 +10,8 @@ use rara_scene::settings::Miss;
 /// A cut splat and its surfaces.
 #[derive(Debug, Clone)]
 pub struct CombinedCut<T> {
-    /// Image derivatives at the splat's centre, pixels.
-    pub gradients: [Vec3<T>; 2],
+    /// Image derivatives at the splat's centre.
+    pub gradients: Gradients<T>,
     /// By how much they change a pixel, `m3 / Z`; nothing where the weight is that of the footprint.
     pub lean: Vec3<T>,
     /// The surfaces, and how they combine.
@@ -24,11 +25,15 @@ pub struct CombinedCut<T> {
 impl<T: Real> CombinedCut<T> {
     /// The visible share at an offset from the splat's centre, pixels.
     pub fn weight(&self, dx: T, dy: T) -> T {
-        let [b1, b2] = self.gradients;
-        let gradients = [b1 - self.lean * dx, b2 - self.lean * dy];
+        let [b1, b2] = self.gradients.b;
+        let b = [b1 - self.lean * dx, b2 - self.lean * dy];
         if let Some((sigma, miss)) = self.chord {
-            return self.chord_share(gradients, [dx, dy], sigma, miss);
+            return self.chord_share(b, [dx, dy], sigma, miss);
         }
+        let gradients = Gradients {
+            b,
+            ..self.gradients
+        };
         let sight = Sight::new(gradients, [dx, dy]);
         let Some(front) = self.front_of(&sight) else {
             return self.surfaces.share(&sight);

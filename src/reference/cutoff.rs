@@ -121,7 +121,7 @@ fn of_planes<T: Real>(
     } = gaussian;
     match settings.mode {
         Mode::Rara => SplatCut::Chord(Chord {
-            gradients: footprint.true_gradients(view),
+            gradients: footprint.true_gradients(view).b,
             lean: footprint.lean(),
             front: (footprint.projection == Projection::Perspective).then_some(HalfSpace {
                 normal: footprint.rows[2],

@@ -8,7 +8,7 @@
 //! the splat on the visible side is therefore `Phi(mean / deviation)`, and alpha times that share is what EWA
 //! splatting (the paper's equation 9) makes of the truncated Gaussian, filtered like every other splat.
 
-use super::footprint::{Footprint, determinant, scaled};
+use super::footprint::{Footprint, Gradients, determinant, scaled};
 use super::orthant::{Direction, Threshold};
 use super::real::{Real, Vec3};
 use super::region::{HalfSpace, share};
@@ -30,7 +30,7 @@ struct Conditional<T> {
 /// `k = Sigma'^-1 B a` and `s^2 = |a|^2 - (B a)^T Sigma'^-1 (B a)` become sums of terms that do not cancel:
 /// `s^2 det = (a . c)^2 + L (|a x b1|^2 + |a x b2|^2) + L^2 |a|^2`, which keeps needles and grazing planes accurate in
 /// single precision.
-fn condition<T: Real>(gradients: [Vec3<T>; 2], half_space: &HalfSpace<T>) -> Conditional<T> {
+fn condition<T: Real>(gradients: Gradients<T>, half_space: &HalfSpace<T>) -> Conditional<T> {
     let largest = half_space.normal.largest();
     let unit = if largest > T::zero() {
         T::one() / largest
@@ -88,7 +88,7 @@ pub struct AffinePlane<T> {
 
 impl<T: Real> AffinePlane<T> {
     /// The form for a half-space and the footprint's own image derivatives.
-    pub fn new(gradients: [Vec3<T>; 2], half_space: &HalfSpace<T>) -> Self {
+    pub fn new(gradients: Gradients<T>, half_space: &HalfSpace<T>) -> Self {
         let Conditional {
             mean,
             deviation,
@@ -126,8 +126,8 @@ impl<T: Real> AffinePlane<T> {
 /// form is exact itself.
 #[derive(Debug, Clone)]
 pub struct Beam<T> {
-    /// Image derivatives at the centre's true direction, pixels.
-    pub gradients: [Vec3<T>; 2],
+    /// Image derivatives at the centre's true direction.
+    pub gradients: Gradients<T>,
     /// The lean `e = m3 / Z`.
     pub lean: Vec3<T>,
     /// The half-spaces that the surfaces keep of the splat that they cut.
@@ -159,8 +159,11 @@ impl<T: Real> Beam<T> {
 
     /// The visible share at an offset from the splat's centre, pixels.
     pub fn weight(&self, dx: T, dy: T) -> T {
-        let [b1, b2] = self.gradients;
-        let ray = [b1 - self.lean * dx, b2 - self.lean * dy];
+        let [b1, b2] = self.gradients.b;
+        let ray = Gradients {
+            b: [b1 - self.lean * dx, b2 - self.lean * dy],
+            ..self.gradients
+        };
         let threshold =
             |half_space: &HalfSpace<T>| AffinePlane::new(ray, half_space).threshold(dx, dy);
         let thresholds = self.half_spaces.iter().map(threshold);

@@ -3,7 +3,7 @@
 //! A point of the Gaussian is `x = mu + M u` with `u ~ N(0, I)` and `M = R(q) S` (the paper, section 3.3: the map
 //! from the unit sphere to the ellipsoid). To first order, u moves the point's image by `(b1 . u, b2 . u)` pixels,
 //! where b1 and b2 are the rows of J W M in the paper's equation 9. 3DGS widens that image by a Gaussian of
-//! [`LOW_PASS`] px^2, so the footprint's covariance is `B B^T + LOW_PASS I`.
+//! a [low-pass](Gaussians::low_pass) of L px^2, so the footprint's covariance is `B B^T + L I`.
 //!
 //! Pixels are `f X / w + c`, with the homogeneous coordinate w: the depth Z in perspective, and 1 in an orthographic view.
 //! By u, w changes by m3 or not at all, and `b = f / w (m - X / w dw/du)` holds for both.
@@ -12,9 +12,16 @@ use glam::{Quat, Vec3 as Point};
 
 use super::real::{Real, Vec3, vec3};
 use super::view::ViewTransform;
-use rara_base::limits::{ALPHA_MIN_INVERSE, COMPENSATION_SQUARE_MIN, LOW_PASS};
+use rara_base::limits::{ALPHA_MIN_INVERSE, COMPENSATION_SQUARE_MIN};
 use rara_scene::Gaussians;
 use rara_scene::camera::Projection;
+
+/// How a splat's image moves by u, b1 and b2, pixels, and by how much the low-pass widens it, px^2.
+#[derive(Debug, Clone, Copy)]
+pub struct Gradients<T> {
+    pub b: [Vec3<T>; 2],
+    pub low_pass: T,
+}
 
 /// A Gaussian in view, from which every later stage computes.
 #[derive(Debug, Clone, Copy)]
@@ -30,8 +37,8 @@ pub struct Footprint<T> {
     /// Units of the scene in one of the layer's.
     pub unit: T,
     pub projection: Projection,
-    /// Image derivatives b1, b2 of the footprint, evaluated at the clamped direction, pixels.
-    pub gradients: [Vec3<T>; 2],
+    /// Image derivatives of the footprint, evaluated at the clamped direction.
+    pub gradients: Gradients<T>,
     /// True when that direction was clamped.
     pub clamped: bool,
     /// How much farther from the centre, in deviations, a pixel can be by the true direction than by the clamped one: at
@@ -56,7 +63,7 @@ impl<T: Real> Footprint<T> {
     /// The footprint of one Gaussian, or nothing if it is culled: it is nearer than the [near cut](super::view::ViewTransform::near_cut) or behind the eye, or
     /// fainter than 1/255 even at its centre, or its box holds no pixel centre of the picture.
     ///
-    /// The opacity of an antialiased one is multiplied by the root of `det B B^T / det (B B^T + LOW_PASS I)`: then the
+    /// The opacity of an antialiased one is multiplied by the root of `det B B^T / det (B B^T + L I)`: then the
     /// footprint that the low-pass has made larger has as much light in it as the one without (the 2D Mip filter of
     /// Yu et al. 2024). Trainers bound the ratio from below ([`COMPENSATION_SQUARE_MIN`]).
     pub fn new(scene: &Gaussians, index: usize, view: &ViewTransform<T>) -> Option<Self> {
@@ -80,7 +87,12 @@ impl<T: Real> Footprint<T> {
                 .min(view.slope_max[axis])
         };
         let clamped = [clamp(0), clamp(1)];
-        let gradients = seen.gradients(view.focal, clamped);
+        let low_pass = T::of(f64::from(scene.low_pass()));
+        let seen_at = |slopes| Gradients {
+            b: seen.gradients(view.focal, slopes),
+            low_pass,
+        };
+        let gradients = seen_at(clamped);
         let (conic, deviations) = factorise(gradients);
 
         let opacity = match scene.is_antialiased() {
@@ -104,7 +116,7 @@ impl<T: Real> Footprint<T> {
             stretch: if clamped == slopes {
                 T::one()
             } else {
-                stretch(gradients, seen.gradients(view.focal, slopes))
+                stretch(gradients, seen_at(slopes).b)
             },
             screen_centre: [0, 1]
                 .map(|axis| view.focal[axis] * slopes[axis] + view.principal[axis]),
@@ -121,9 +133,12 @@ impl<T: Real> Footprint<T> {
     }
 
     /// Image derivatives at the centre's true direction, for computations along true rays.
-    pub fn true_gradients(&self, view: &ViewTransform<T>) -> [Vec3<T>; 2] {
+    pub fn true_gradients(&self, view: &ViewTransform<T>) -> Gradients<T> {
         let seen = self.seen();
-        seen.gradients(view.focal, seen.slopes)
+        Gradients {
+            b: seen.gradients(view.focal, seen.slopes),
+            ..self.gradients
+        }
     }
 
     /// The lean e, by how much the lines of sight of a pixel to the right and of a pixel below lean against the
@@ -171,8 +186,8 @@ impl<T: Real> Footprint<T> {
 
 /// The largest ratio of two covariances' deviations is at most the root of the trace of one by the other's inverse. The
 /// trace is a sum of squares: `xx yy' - 2 xy xy' + yy xx'` would cancel for needles.
-fn stretch<T: Real>([b1, b2]: [Vec3<T>; 2], [c1, c2]: [Vec3<T>; 2]) -> T {
-    let low_pass = T::of(f64::from(LOW_PASS));
+fn stretch<T: Real>(clamped: Gradients<T>, [c1, c2]: [Vec3<T>; 2]) -> T {
+    let ([b1, b2], low_pass) = (clamped.b, clamped.low_pass);
     let lengths = c1.dot(c1) + c2.dot(c2);
     let across = c1.cross(c2);
     let determinant = across.dot(across) + low_pass * (lengths + low_pass);
@@ -243,9 +258,10 @@ impl<T: Real> ProjectedCentre<T> {
 
 /// Scales image derivatives and low-pass together so that their products stay in single precision's range; returns
 /// the scaled derivatives, the factor (also that of pixel offsets) and the scaled low-pass.
-pub(super) fn scaled<T: Real>([b1, b2]: [Vec3<T>; 2]) -> ([Vec3<T>; 2], T, T) {
+pub(super) fn scaled<T: Real>(gradients: Gradients<T>) -> ([Vec3<T>; 2], T, T) {
+    let [b1, b2] = gradients.b;
     let factor = T::one() / T::one().max(b1.largest()).max(b2.largest());
-    let low_pass = T::of(f64::from(LOW_PASS)) * factor * factor;
+    let low_pass = gradients.low_pass * factor * factor;
     ([b1 * factor, b2 * factor], factor, low_pass)
 }
 
@@ -256,7 +272,7 @@ pub(super) fn determinant<T: Real>([b1, b2]: [Vec3<T>; 2], c: Vec3<T>, low_pass:
 }
 
 /// What keeps the light of a footprint as it is without the low-pass.
-fn compensation<T: Real>(gradients: [Vec3<T>; 2]) -> T {
+fn compensation<T: Real>(gradients: Gradients<T>) -> T {
     let ([b1, b2], _, low_pass) = scaled(gradients);
     let across = b1.cross(b2);
     let share = across.squared() / determinant([b1, b2], across, low_pass);
@@ -264,7 +280,7 @@ fn compensation<T: Real>(gradients: [Vec3<T>; 2]) -> T {
 }
 
 /// The conic, the factors of `q = (k0 dx)^2 + (k1 dx + k2 dy)^2`, and the standard deviations along x and y, pixels.
-fn factorise<T: Real>(gradients: [Vec3<T>; 2]) -> ([T; 3], [T; 2]) {
+fn factorise<T: Real>(gradients: Gradients<T>) -> ([T; 3], [T; 2]) {
     let ([b1, b2], factor, low_pass) = scaled(gradients);
     let (xx, yy) = (b1.squared() + low_pass, b2.squared() + low_pass);
     let deviation = determinant([b1, b2], b1.cross(b2), low_pass).sqrt();

@@ -29,7 +29,7 @@ pub mod splat;
 mod view;
 
 pub use cutoff::SplatCut;
-pub use footprint::Footprint;
+pub use footprint::{Footprint, Gradients};
 pub use layer::LayerView;
 pub use project::Splat;
 pub use real::{Real, Vec3, vec3};

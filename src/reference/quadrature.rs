@@ -3,7 +3,7 @@
 //!
 //! It integrates the density of the Gaussian at points of the world, from its inverse transform (the paper, section 3.3:
 //! `|M^-1 (x - mu)|^2`), along rays that start at the eye and only in front of it. 3DGS's low-pass means
-//! that a pixel sees a bundle of rays, weighted by a Gaussian of [`LOW_PASS`] px^2. There are two readings of that
+//! that a pixel sees a bundle of rays, weighted by a Gaussian of the [low-pass](Gaussians::low_pass). There are two readings of that
 //! bundle, see [`Bundle`]; they differ by what the low-pass does at depths other than the splat's own.
 //!
 //! Orthographic rays run along the view axis. They start nowhere, and both readings are the same.
@@ -11,7 +11,6 @@
 use glam::{DMat3, DQuat, DVec2, DVec3};
 
 use super::region::surface_crossings;
-use rara_base::limits::LOW_PASS;
 use rara_scene::Gaussians;
 use rara_scene::camera::{Camera, Projection};
 use rara_scene::clip::Clip;
@@ -122,6 +121,8 @@ struct Pixel {
     /// x/z and y/z of the pixel's own ray; of an orthographic one its x and y.
     slope: DVec2,
     bundle: Bundle,
+    /// Square pixels.
+    low_pass: f64,
 }
 
 /// A ray in the Gaussian's unit space and in the world, by the depth counted from the Gaussian's centre.
@@ -163,6 +164,7 @@ impl Pixel {
             projection: camera.projection,
             slope: (position - DVec2::new(camera.cx, camera.cy)) / focal,
             bundle,
+            low_pass: f64::from(scene.low_pass()),
         }
     }
 
@@ -188,7 +190,7 @@ impl Pixel {
     fn residual(&self, offset: DVec2) -> [f64; 5] {
         let ray = self.ray(offset);
         let nearest = ray.unit_start + ray.unit_step * ray.densest();
-        let filter = offset / f64::from(LOW_PASS).sqrt();
+        let filter = offset / self.low_pass.sqrt();
         [filter.x, filter.y, nearest.x, nearest.y, nearest.z]
     }
 
@@ -263,7 +265,7 @@ impl Pixel {
             .collect();
         ends.sort_by(f64::total_cmp);
 
-        let weight = 0.5 * offset.length_squared() / f64::from(LOW_PASS) - peak;
+        let weight = 0.5 * offset.length_squared() / self.low_pass - peak;
         let mut sums = [0.0; 3];
         for stretch in ends.windows(2) {
             let (centre, half) = (

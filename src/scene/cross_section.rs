@@ -31,7 +31,7 @@ use rara_base::limits::ALPHA_MIN_INVERSE;
 pub fn cross_section(gaussians: &Gaussians, plane: &Plane) -> Gaussians {
     let mut on_plane = Gaussians::default();
     on_plane.set_sh_degree(gaussians.sh_degree());
-    on_plane.set_antialiased(gaussians.is_antialiased());
+    on_plane.set_trained_as(gaussians);
     let normal = plane.normal();
     let first = normal.any_orthonormal_vector();
     let across = [first, normal.cross(first)];

@@ -2,14 +2,18 @@
 
 use bytemuck::allocation::try_zeroed_vec;
 use glam::{Quat, Vec3};
+use std::fmt;
 
 use rara_base::counted::counted;
 use rara_base::error::{Error, Result};
+use rara_base::setters;
 
 /// The highest degree of spherical harmonics.
 pub(super) const MAX_SH_DEGREE: u32 = 3;
 /// How far the square of a rotation's length may be from one. Rounded ones are within 1e-6; unnormalised ones are not.
 const UNIT: f32 = 1e-3;
+/// The low-passes that can be drawn, square pixels. Without any, splats of less than a pixel would come and go.
+const LOW_PASSES: std::ops::RangeInclusive<f32> = 0.01..=10.0;
 
 /// A set of 3D Gaussians, one array per attribute.
 ///
@@ -35,8 +39,62 @@ pub struct GaussianArrays {
     pub sh_degree: u32,
     /// Spherical harmonics, `[Gaussian][coefficient][r, g, b]`, `(sh_degree + 1)^2` coefficients a Gaussian.
     pub sh: Vec<f32>,
-    /// Whether they were trained antialiased: see [`Gaussians::is_antialiased`].
-    pub antialiased: bool,
+    /// How they were trained.
+    pub training: Training,
+}
+
+setters! {
+    /// How Gaussians were trained, in so far as they are drawn by it. It holds for all of a set.
+    ///
+    /// ```
+    /// # use rara_scene as rara;
+    /// let mip_splatting = rara::scene::Training::default().antialiased(true).low_pass(0.1);
+    /// let mut gaussians = rara::scene::Gaussians::default();
+    /// gaussians.set_training(mip_splatting)?;
+    /// # Ok::<(), rara::Error>(())
+    /// ```
+    #[derive(Debug, Clone, Copy, PartialEq)]
+    #[non_exhaustive]
+    pub struct Training {
+        /// See [`Gaussians::is_antialiased`]. Default: false.
+        pub antialiased: bool,
+        /// The low-pass, square pixels, 0.01 to 10: see [`Gaussians::low_pass`]. Default: 0.3.
+        pub low_pass: f32,
+    }
+}
+
+impl Default for Training {
+    fn default() -> Self {
+        Self {
+            antialiased: false,
+            low_pass: 0.3,
+        }
+    }
+}
+
+impl fmt::Display for Training {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let antialiased = if self.antialiased {
+            "antialiased, "
+        } else {
+            ""
+        };
+        write!(f, "{antialiased}with a low-pass of {} px^2", self.low_pass)
+    }
+}
+
+impl Training {
+    fn check(&self) -> std::result::Result<(), String> {
+        match LOW_PASSES.contains(&self.low_pass) {
+            true => Ok(()),
+            false => Err(format!(
+                "the low-pass is {} square pixels: {} to {} can be drawn",
+                self.low_pass,
+                LOW_PASSES.start(),
+                LOW_PASSES.end()
+            )),
+        }
+    }
 }
 
 impl Gaussians {
@@ -45,7 +103,7 @@ impl Gaussians {
     /// # Errors
     /// [`Error::Invalid`] names the array whose length is not that of `positions`, or the first number in it that cannot
     /// be drawn: one that is not finite, a negative scale, a rotation that is no unit quaternion, an opacity that is not
-    /// between 0 and 1.
+    /// between 0 and 1; or says that the low-pass is one that cannot be drawn.
     pub fn new(arrays: GaussianArrays) -> Result<Self> {
         arrays.check().map_err(Error::Invalid)?;
         Ok(Self(arrays))
@@ -124,16 +182,45 @@ impl Gaussians {
 
     /// True for Gaussians that were trained antialiased, as by `--antialiasing` of 3DGS, `rasterize_mode antialiased` of
     /// gsplat and nerfstudio, or Mip-Splatting. Each is then drawn with its opacity multiplied by
-    /// `sqrt(max(det S / det (S + 0.3 I), 0.000025))`, with the covariance `S` of its footprint in square pixels: what the
+    /// `sqrt(max(det S / det (S + L I), 0.000025))`, with the covariance `S` of its footprint and the
+    /// [low-pass](Self::low_pass) L, square pixels: what the
     /// low-pass makes larger than it is gets no brighter for it. Others are drawn as opaque as they are. Loaders find it in
     /// files that say so.
     pub fn is_antialiased(&self) -> bool {
-        self.0.antialiased
+        self.0.training.antialiased
+    }
+
+    /// What is added to the variance of each footprint along either axis of the picture, square pixels. Gaussians look as they
+    /// did in training with the low-pass of their trainer: 0.3, as in 3DGS, gsplat and nerfstudio, or 0.1, as in Mip-Splatting
+    /// and in Brush where that trains antialiased. Loaders find it in files that say so, and by who wrote them.
+    pub fn low_pass(&self) -> f32 {
+        self.0.training.low_pass
+    }
+
+    /// How they were trained.
+    pub fn training(&self) -> Training {
+        self.0.training
     }
 
     /// Says whether they were trained antialiased, which holds for all of a set.
     pub fn set_antialiased(&mut self, antialiased: bool) {
-        self.0.antialiased = antialiased;
+        self.0.training.antialiased = antialiased;
+    }
+
+    /// Says how they were trained.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] where the low-pass is one that cannot be drawn.
+    pub fn set_training(&mut self, training: Training) -> Result<()> {
+        training.check().map_err(Error::Invalid)?;
+        self.0.training = training;
+        Ok(())
+    }
+
+    /// Says that they were trained as others were.
+    #[doc(hidden)]
+    pub fn set_trained_as(&mut self, other: &Gaussians) {
+        self.0.training = other.0.training;
     }
 
     /// Centres, to be moved. Nothing checks what is written here and through the methods below: a number that
@@ -204,10 +291,10 @@ impl Gaussians {
     }
 
     /// Appends `other`, raising both to the higher spherical-harmonics degree (the missing coefficients are zero). A set is
-    /// [antialiased](Self::is_antialiased) as a whole: the first Gaussians say whether it is, and others are drawn like them.
+    /// [trained](Self::training) in one way: the first Gaussians say in which, and others are drawn like them.
     pub fn append(&mut self, other: &Gaussians) {
         if self.is_empty() {
-            self.0.antialiased = other.0.antialiased;
+            self.set_trained_as(other);
         }
         let degree = if self.is_empty() {
             other.0.sh_degree
@@ -288,11 +375,12 @@ impl GaussianArrays {
             opacities: try_zeroed_vec(count).ok()?,
             sh_degree,
             sh: try_zeroed_vec(numbers).ok()?,
-            antialiased: false,
+            training: Training::default(),
         })
     }
 
     fn check(&self) -> std::result::Result<(), String> {
+        self.training.check()?;
         if self.sh_degree > MAX_SH_DEGREE {
             let degree = self.sh_degree;
             return Err(format!(

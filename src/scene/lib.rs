@@ -56,7 +56,7 @@ pub use settings::{Decay, ExactForm, Miss, Mode, Raster, Settings, Show};
 
 pub use bounds::{Bounds, extent_along};
 pub use cross_section::cross_section;
-pub use gaussians::{GaussianArrays, Gaussians, sh_coefficients};
+pub use gaussians::{GaussianArrays, Gaussians, Training, sh_coefficients};
 #[doc(hidden)]
 pub use generate::Random;
 pub use generate::{Kind, generate};

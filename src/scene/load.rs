@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
 
-use super::{Format, Gaussians, LoadReport, Property, ply};
+use super::{Format, Gaussians, LoadReport, Property, Training, ply};
 use rara_base::error::{Error, Result};
 
 /// What a format reads: a file of which nothing has been read yet.
@@ -42,9 +42,14 @@ pub struct SceneFile {
 
 impl SceneFile {
     /// Notes what the file says of how its Gaussians were trained; they are drawn so.
-    pub(super) fn says(&mut self, antialiased: Option<bool>) {
+    pub(super) fn says(&mut self, antialiased: Option<bool>, low_pass: Option<f32>) {
         self.antialiased = antialiased;
-        self.gaussians.set_antialiased(antialiased == Some(true));
+        let plain = Training::default().antialiased(antialiased == Some(true));
+        let training = plain.low_pass(low_pass.unwrap_or(plain.low_pass));
+        if let Err(error) = self.gaussians.set_training(training) {
+            self.report.note(format!("drew it as 3DGS does: {error}"));
+            self.gaussians.set_antialiased(plain.antialiased);
+        }
     }
 }
 

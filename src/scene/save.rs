@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use super::formats::WRITERS;
-use super::{Format, Gaussians};
+use super::{Format, Gaussians, Training};
 use rara_base::error::{Error, Result};
 use rara_base::files::write_atomically;
 
@@ -101,12 +101,18 @@ fn check(path: &Path, gaussians: &Gaussians) -> Result<()> {
         .map_err(|error| Error::Invalid(format!("{} is not written: {error}", path.display())))
 }
 
-/// The line of a PLY's header by which readers, this one too, know Gaussians that were trained antialiased.
-pub(super) fn antialiased_comment(gaussians: &Gaussians) -> &'static str {
-    match gaussians.is_antialiased() {
-        true => "comment SplatRenderMode: mip\n",
-        false => "",
+/// The lines of a PLY's header by which readers know how Gaussians were trained: others that they are antialiased, this one also
+/// the low-pass.
+pub(super) fn training_comments(gaussians: &Gaussians) -> String {
+    let training = gaussians.training();
+    let mut lines = String::new();
+    if training.antialiased {
+        lines.push_str("comment SplatRenderMode: mip\n");
     }
+    if training.low_pass != Training::default().low_pass {
+        lines.push_str(&format!("comment LowPass: {}\n", training.low_pass));
+    }
+    lines
 }
 
 fn write_header(out: &mut dyn Write, gaussians: &Gaussians) -> io::Result<()> {
@@ -114,7 +120,7 @@ fn write_header(out: &mut dyn Write, gaussians: &Gaussians) -> io::Result<()> {
     write!(
         out,
         "ply\nformat binary_little_endian 1.0\n{}element vertex {}\n",
-        antialiased_comment(gaussians),
+        training_comments(gaussians),
         gaussians.len()
     )?;
     let fixed = |names: &'static [&'static str]| names.iter().map(|name| name.to_string());

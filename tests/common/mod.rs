@@ -204,7 +204,7 @@ pub fn generated_scenes(count: usize) -> Vec<(String, Gaussians)> {
 pub fn picked(scene: &Gaussians, indices: impl IntoIterator<Item = usize>) -> Gaussians {
     let mut picked = Gaussians::default();
     picked.set_sh_degree(scene.sh_degree());
-    picked.set_antialiased(scene.is_antialiased());
+    picked.set_training(scene.training()).expect("as it was");
     for index in indices {
         picked.push(
             scene.positions()[index],
@@ -333,7 +333,7 @@ pub fn truth(
     bytemuck::cast_slice::<_, u8>(scene.rotations()).hash(&mut hash);
     bytemuck::cast_slice::<_, u8>(scene.opacities()).hash(&mut hash);
     bytemuck::cast_slice::<_, u8>(scene.sh()).hash(&mut hash);
-    let scene_key = (hash.finish(), scene.sh_degree(), scene.is_antialiased());
+    let scene_key = (hash.finish(), scene.sh_degree(), scene.training());
     // Numbers are written so that different ones differ.
     let key = format!("{scene_key:?} {camera:?} {clip:?} {settings:?}");
     let mut last = LAST.lock().unwrap_or_else(PoisonError::into_inner);

@@ -4,16 +4,10 @@ use std::path::Path;
 
 use rara::Gaussians;
 use rara::glam::Vec3;
-use rara::scene::{Kind, SceneFile, generate, load, load_from, load_from_with, save};
+use rara::scene::{Kind, SceneFile, Training, generate, load, load_from, load_from_with, save};
 
 use crate::folder::Folder;
 use crate::ply::made::{FIXED, Format, floats, scene_file};
-
-fn antialiased() -> Gaussians {
-    let mut scene = generate(Kind::General, 300, 7);
-    scene.set_antialiased(true);
-    scene
-}
 
 fn loaded(bytes: Vec<u8>) -> SceneFile {
     let name = Path::new("made up");
@@ -23,14 +17,21 @@ fn loaded(bytes: Vec<u8>) -> SceneFile {
 #[test]
 fn formats_that_can_say_it_keep_what_is_antialiased() {
     let folder = Folder::new("formats-antialiased");
-    let mut scene = antialiased();
-    for antialiased in [true, false] {
-        scene.set_antialiased(antialiased);
+    let mut scene = generate(Kind::General, 300, 7);
+    for (antialiased, low_pass) in [(true, 0.3), (false, 0.3), (true, 0.1), (false, 0.7)] {
+        let training = Training::default()
+            .antialiased(antialiased)
+            .low_pass(low_pass);
+        scene.set_training(training).expect("can be drawn");
         for name in ["a.ply", "a.compressed.ply", "a.spz", "a.sog"] {
             let path = folder.join(name);
             save(&path, &scene).expect("it is written");
             let read = load(&path, &mut |_, _| ()).expect("it is read");
-            assert_eq!(read.gaussians.is_antialiased(), antialiased, "{name}");
+            let kept = match name {
+                "a.spz" => training.low_pass(0.3),
+                _ => training,
+            };
+            assert_eq!(read.gaussians.training(), kept, "{name}");
         }
     }
     // No property of the glTF extension is for it.
@@ -52,7 +53,7 @@ fn comments_of_trainers_are_read() {
         file.header = file
             .header
             .replace("element", &format!("comment {comment}\nelement"));
-        loaded(file.bytes()).gaussians.is_antialiased()
+        loaded(file.bytes())
     };
     for (comment, expected) in [
         ("SplatRenderMode: mip", true),
@@ -61,7 +62,19 @@ fn comments_of_trainers_are_read() {
         ("antialiased 0", false),
         ("antialiasing is a word", false),
     ] {
-        assert_eq!(said(comment), expected, "{comment}");
+        let found = said(comment).gaussians.training();
+        assert_eq!(found.antialiased, expected, "{comment}");
+        assert_eq!(found.low_pass, 0.3, "{comment}");
+    }
+    let of_brush = said("Exported from Brush\ncomment SplatRenderMode: mip");
+    let mip = Training::default().antialiased(true).low_pass(0.1);
+    assert_eq!(of_brush.gaussians.training(), mip);
+    // What cannot be drawn is said.
+    for value in ["0", "-1", "NaN", "1e9"] {
+        let found = said(&format!("LowPass: {value}"));
+        assert_eq!(found.gaussians.training(), Training::default(), "{value}");
+        let report = found.report.to_string();
+        assert!(report.contains("low-pass"), "{value}: {report}");
     }
 }
 
@@ -73,6 +86,10 @@ fn filters_of_mip_splatting_smooth() {
     let bytes = scene_file(Format::Ascii, 8, &floats(&names)).bytes();
     let made = loaded(bytes.clone());
     assert!(made.gaussians.is_antialiased() && !plain.gaussians.is_antialiased());
+    assert_eq!(
+        (made.gaussians.low_pass(), plain.gaussians.low_pass()),
+        (0.1, 0.3)
+    );
     assert!(
         made.report.to_string().contains("filter_3D"),
         "{}",

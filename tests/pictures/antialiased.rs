@@ -1,8 +1,9 @@
-//! Gaussians that were trained antialiased, whose opacities make up for the low-pass: against the reference, whole and cut.
+//! Gaussians that were trained antialiased, whose opacities make up for the low-pass, or with another low-pass than that of
+//! 3DGS: against the reference, whole and cut.
 
 use crate::common;
 use rara::clip::Expression;
-use rara::scene::{self, Kind};
+use rara::scene::{self, Kind, Training};
 use rara::{
     Camera, Clip, ClipOp, Gaussians, Headless, Layer, LayerState, Mode, Picture, Raster, Scene,
     Settings,
@@ -46,17 +47,34 @@ fn light(picture: &Picture) -> f64 {
 
 #[test]
 fn antialiased_pictures_are_the_references() {
-    let scene = small_and_large();
+    agrees_with_the_reference(&small_and_large(), "antialiased");
+}
+
+#[test]
+fn pictures_of_another_low_pass_are_the_references() {
+    let mut scene = small_and_large();
+    for training in [
+        Training::default().antialiased(true).low_pass(0.1),
+        Training::default().low_pass(0.03),
+        Training::default().low_pass(2.0),
+    ] {
+        scene.set_training(training).expect("can be drawn");
+        agrees_with_the_reference(&scene, &training.to_string());
+    }
+}
+
+/// Compares pictures of every mode, and of several clips.
+fn agrees_with_the_reference(scene: &Gaussians, name: &str) {
     let mut headless = common::headless();
-    headless.load(&scene).expect("uploads");
-    let camera = view(&scene);
+    headless.load(scene).expect("uploads");
+    let camera = view(scene);
     let rasters = common::rasters(headless.device());
     let mut check = |mode: Mode, raster: Raster, clip: &Clip, camera: &Camera| {
         let settings = Settings::default().mode(mode).raster(raster);
-        let name = format!("antialiased by {raster:?}");
-        common::check(&mut headless, &name, &scene, camera, clip, &settings);
+        let name = format!("{name} by {raster:?}");
+        common::check(&mut headless, &name, scene, camera, clip, &settings);
     };
-    let planes = |count: usize, op: ClipOp| common::clip(&scene, count, op);
+    let planes = |count: usize, op: ClipOp| common::clip(scene, count, op);
     let one = planes(1, ClipOp::And);
     let shapes = of("any(box:-0.4,0,0,0.3,0.3,0.3, !sphere:0.1,0,0,0.5)");
     for (mode, clip) in [
@@ -71,7 +89,7 @@ fn antialiased_pictures_are_the_references() {
         check(Mode::Exact, raster, &one, &camera);
         check(Mode::Exact, raster, &shapes, &camera);
     }
-    let flat = common::flattened(&camera, &scene);
+    let flat = common::flattened(&camera, scene);
     check(Mode::Exact, Raster::Tiles, &one, &flat);
 }
 
@@ -104,7 +122,9 @@ fn small_splats_are_darker_antialiased() {
 fn layers_are_antialiased_one_by_one() {
     let whole = small_and_large();
     let half = |parity: usize| common::picked(&whole, (parity..whole.len()).step_by(2));
-    let (antialiased, plain) = (half(0), plain(&half(1)));
+    let (mut antialiased, plain) = (half(0), plain(&half(1)));
+    let training = antialiased.training().low_pass(0.1);
+    antialiased.set_training(training).expect("can be drawn");
     let camera = view(&whole);
     let clip = common::clip(&whole, 1, ClipOp::And);
     let mut headless = common::headless();

@@ -1,6 +1,7 @@
 //! Stages `blocks` and `classify`: which Gaussians are in view, and what the clip does to them.
 
 use glam::{DMat4, Quat, Vec3};
+use rara::scene::Training;
 use rara::{Camera, Clip, ClipOp, Mode, Raster, Settings};
 use rara_base::limits::BLOCK_SIZE;
 use rara_reference::{Side, ViewTransform, classify};
@@ -67,7 +68,11 @@ fn classes_of_antialiased_gaussians_are_the_twins() {
     let camera = frame::views(&scene)[0];
     let mut culled = [0; 2];
     for (antialiased, culled) in [false, true].into_iter().zip(&mut culled) {
-        scene.set_antialiased(antialiased);
+        let low_pass = if antialiased { 0.1 } else { 0.3 };
+        let training = Training::default()
+            .antialiased(antialiased)
+            .low_pass(low_pass);
+        scene.set_training(training).expect("can be drawn");
         stages.load(&scene);
         for (mode, planes) in [(Mode::None, 0), (Mode::Exact, 1), (Mode::Rara, 2)] {
             let settings = Settings::default().mode(mode).raster(Raster::Quad);

@@ -113,13 +113,13 @@ fn compare(
                 if planes.len() == count {
                     worst.kinds[2] += 1;
                     let still = vec3(0.0, 0.0, 0.0);
-                    compare_rays(record, footprint.gradients, still, [0.0; 2], worst);
+                    compare_rays(record, footprint.gradients.b, still, [0.0; 2], worst);
                 }
             }
             (SplatCut::Beam(beam), BEAM) => {
                 assert_eq!(beam.front.is_some(), flags & FRONT != 0, "{index}");
                 worst.kinds[2 + usize::from(flags & FRONT != 0)] += 1;
-                compare_rays(record, beam.gradients, beam.lean, aside, worst);
+                compare_rays(record, beam.gradients.b, beam.lean, aside, worst);
                 compare_planes(&record[3..], (count, is_union), &beam.half_spaces, worst);
                 if let Some(front) = &beam.front {
                     let front = std::slice::from_ref(front);

@@ -77,7 +77,7 @@ fn compare(stages: &mut Stages, camera: &Camera, worst: &mut Apart) {
         if stages.scene.is_antialiased() {
             // The determinant's root has the shape's condition.
             let gradients = twin.footprint.gradients;
-            let condition = condition(gradients.map(|b| Vec3::new(b.x, b.y, b.z)));
+            let condition = condition(gradients.b.map(|b| Vec3::new(b.x, b.y, b.z)));
             let apart = ulps(opacity, twin.footprint.opacity, opaque) / condition;
             worst.opacity = worst.opacity.max(apart);
         } else {
@@ -101,7 +101,7 @@ fn compare(stages: &mut Stages, camera: &Camera, worst: &mut Apart) {
         // The factors' rounding, against the cancellation that the twin in double precision finds.
         let [t0, t1, t2] = f.conic;
         let size = t1.hypot(t2);
-        let condition = condition(f.gradients.map(|b| Vec3::new(b.x, b.y, b.z)));
+        let condition = condition(f.gradients.b.map(|b| Vec3::new(b.x, b.y, b.z)));
         let of = |ours, theirs, size| ulps(ours, theirs, size) / condition;
         let shape = of(k0, t0, 0.0).max(of(k1, t1, size)).max(of(k2, t2, 0.0));
         worst.shape = worst.shape.max(shape);

@@ -7,7 +7,7 @@ use crate::boundary::{RARA_ERROR_INVALID, RARA_OK};
 use crate::gaussians::rara_gaussians_destroy;
 use crate::handles::alive;
 use crate::tests::assert_fails;
-use rara::scene::{Kind, generate};
+use rara::scene::{Kind, Training, generate};
 
 /// The result, and the Gaussians that it has given.
 fn made(arrays: &RaraGaussianArrays) -> (RaraResult, Option<Gaussians>) {
@@ -106,8 +106,10 @@ fn what_is_wrong_with_arrays_is_named() {
     };
     let mut antialiased = packed(&gaussians);
     antialiased.antialiased = 1;
+    antialiased.low_pass = 0.1;
     let (code, made_of_it) = made(&antialiased);
-    let is_antialiased = made_of_it.is_some_and(|made| made.is_antialiased());
+    let is_antialiased = made_of_it
+        .is_some_and(|made| made.training() == Training::default().antialiased(true).low_pass(0.1));
     assert!(code == RARA_OK && is_antialiased);
     refused(&|a| a.struct_size = 12, "arrays->struct_size is 12");
     refused(&|a| a.sh_degree = 4, "arrays->sh_degree is 4");

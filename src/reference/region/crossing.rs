@@ -8,7 +8,7 @@
 //! beyond `w . Q w`. Without low-pass w is the line of sight itself, and all of this is exact; for a plane Q is zero, and it
 //! is the plane's z.
 
-use crate::footprint::{determinant, scaled};
+use crate::footprint::{Gradients, determinant, scaled};
 use crate::orthant::{Direction, Threshold};
 use crate::real::{Real, Vec3};
 use crate::region::UnitSurface;
@@ -46,7 +46,7 @@ pub(super) struct SurfaceCrossing<T> {
 
 impl<T: Real> Sight<T> {
     /// The line of sight at an offset from the splat's centre, pixels.
-    pub(crate) fn new(gradients: [Vec3<T>; 2], delta: [T; 2]) -> Self {
+    pub(crate) fn new(gradients: Gradients<T>, delta: [T; 2]) -> Self {
         let (gradients, factor, low_pass) = scaled(gradients);
         Self::from_gradients(gradients, delta.map(|d| d * factor), low_pass)
     }

@@ -6,6 +6,7 @@ use glam::{DVec2, DVec3, Vec3};
 
 use super::tile_side::{Sights, TILE_REACH, pixels, vector, within};
 use super::{HalfSpace, Side, Sight, Symmetric, UnitSurface};
+use crate::footprint::Gradients;
 use crate::real::{Vec3 as Vector, vec3};
 use rara_scene::Random;
 
@@ -109,7 +110,7 @@ fn tiles_on_a_side_of_a_surface_have_no_pixel_on_the_other() {
             lean: shape * vector(&mut random, size) * [0.0, 1e-3, 1e-2][(round % 3) as usize],
             delta: vector(&mut random, 3.0 * size).truncate(),
             scale: 1.0,
-            low_pass: rara_base::limits::LOW_PASS,
+            low_pass: rara_scene::Training::default().low_pass,
         };
         // Surfaces that bend from hardly to within a deviation.
         let bend = 10_f32.powi(-(round / 32 % 5));
@@ -127,7 +128,11 @@ fn tiles_on_a_side_of_a_surface_have_no_pixel_on_the_other() {
                 let b1 = sights.b1.as_dvec3() - pixel.x * lean;
                 let b2 = sights.b2.as_dvec3() - pixel.y * lean;
                 let delta = sights.delta.as_dvec2() + pixel;
-                Sight::new([double(b1), double(b2)], delta.to_array()).share(&twin)
+                let gradients = Gradients {
+                    b: [double(b1), double(b2)],
+                    low_pass: sights.low_pass.into(),
+                };
+                Sight::new(gradients, delta.to_array()).share(&twin)
             })
             .collect();
         let least = shares.iter().copied().fold(1.0, f64::min);

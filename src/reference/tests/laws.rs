@@ -4,6 +4,7 @@ use super::properties::{Case, cases, directions, splats};
 use super::*;
 use glam::Quat;
 use proptest::prelude::*;
+use rara_scene::Training;
 use rara_scene::settings::{Decay, Miss};
 
 /// How far two halves may be from the whole, as alpha or as weight. Doubles: rounding. Singles: each half is rounded
@@ -235,7 +236,7 @@ fn what_is_antialiased_has_the_light_that_it_has_without_the_low_pass() {
             continue;
         };
         let plain = plain.expect("what is fainter is in view");
-        let [b1, b2] = footprint.gradients;
+        let [b1, b2] = footprint.gradients.b;
         let [k0, _, k2] = footprint.conic;
         let (without, with) = (b1.cross(b2).length(), 1.0 / (k0 * k2));
         let light = |opacity: f64, deviations: f64| opacity * deviations;
@@ -283,7 +284,7 @@ fn a_picture_twice_as_large_is_another_picture_of_small_splats() {
         let footprint = Footprint::new(&scene(&[one]), 0, &view).unwrap();
         (footprint.half_sides[0] / footprint.extent).powi(2)
     };
-    let low_pass = f64::from(rara_base::limits::LOW_PASS);
+    let low_pass = f64::from(Training::default().low_pass);
     let [small, large] = [1.0, 2.0].map(variance);
     assert!((large - 4.0 * small + 3.0 * low_pass).abs() < 1e-12);
 }

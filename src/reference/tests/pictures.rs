@@ -2,6 +2,7 @@
 
 use super::*;
 use glam::Vec3 as Point;
+use rara_scene::Training;
 
 #[test]
 fn an_isotropic_splat_on_the_axis_is_a_round_gaussian() {
@@ -13,7 +14,7 @@ fn an_isotropic_splat_on_the_axis_is_a_round_gaussian() {
     let camera = camera(65, 65, 200.0);
     let picture = whole(&scene(&[one]), &camera);
     // 0.1 units at 4 units through a focal length of 200 pixels, and the low-pass.
-    let variance = 25.0_f64 + f64::from(rara_base::limits::LOW_PASS);
+    let variance = 25.0_f64 + f64::from(Training::default().low_pass);
     for y in 0..65 {
         for x in 0..65 {
             let squared = f64::from(x as i32 - 32).powi(2) + f64::from(y as i32 - 32).powi(2);

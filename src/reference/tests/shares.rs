@@ -1,6 +1,7 @@
 //! Weights of mode `exact` by closed forms.
 
 use super::*;
+use rara_scene::Training;
 use rara_scene::settings::ExactForm;
 
 const FORMS: [ExactForm; 3] = [ExactForm::Affine, ExactForm::Beam, ExactForm::Auto];
@@ -73,7 +74,7 @@ fn a_plane_across_the_view_cuts_every_ray_of_a_round_splat_alike() {
 fn a_plane_along_the_view_shows_the_low_pass() {
     // A plane that contains the view axis: given the pixel, x is normal with the mean and variance of a one-dimensional
     // Gaussian of variance s^2 seen through noise of variance L: mean s^2/(s^2 + L) dx, variance s^2 L/(s^2 + L).
-    let low_pass = f64::from(rara_base::limits::LOW_PASS);
+    let low_pass = f64::from(Training::default().low_pass);
     for pixels in [0.05_f32, 0.5, 3.0] {
         let one = One {
             scale: [pixels * 0.04; 3],

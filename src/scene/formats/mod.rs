@@ -51,11 +51,11 @@ impl FormatOutput {
     /// Appends what another part of the file has become.
     fn append(&mut self, other: Self) -> std::result::Result<(), Failure> {
         let before = self.elements;
-        let differs = self.gaussians.is_antialiased() != other.gaussians.is_antialiased();
+        let differs = self.gaussians.training() != other.gaussians.training();
         if differs && !self.gaussians.is_empty() && !other.gaussians.is_empty() {
             self.report.note(format!(
-                "some parts were trained antialiased and some not; all are drawn {}, as the first is",
-                if self.gaussians.is_antialiased() { "antialiased" } else { "as they are" }
+                "some parts were trained in other ways; all are drawn {}, as the first is",
+                self.gaussians.training()
             ));
         }
         if self.gaussians.is_empty() {

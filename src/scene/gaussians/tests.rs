@@ -10,7 +10,7 @@ fn arrays() -> GaussianArrays {
         opacities: vec![0.0, 1.0],
         sh_degree: 1,
         sh: vec![-0.5; 24],
-        antialiased: true,
+        training: Training::default().antialiased(true).low_pass(0.1),
     }
 }
 

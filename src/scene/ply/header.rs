@@ -8,7 +8,7 @@ use std::collections::HashSet;
 use ply_rs::parser::{Parser, Reader};
 use ply_rs::ply::{DefaultElement, ElementDef, Encoding, PropertyType, ScalarType};
 
-use super::trained::TrainerKind;
+use super::trained::{self, TrainerKind};
 use rara_base::error::shortened;
 
 /// Headers of real files are below 5 kB; this leaves room for long comments. No more is read before the header is known.
@@ -33,6 +33,8 @@ pub(super) struct PlyHeader {
     pub(super) line_end: u8,
     /// What the comments say of the Gaussians.
     pub(super) kind: Option<TrainerKind>,
+    /// The low-pass that they say, or that who wrote them trains with.
+    pub(super) low_pass: Option<f32>,
 }
 
 impl PlyHeader {
@@ -69,6 +71,7 @@ impl PlyHeader {
             blank: all - lines.len(),
             line_end,
             kind: TrainerKind::from_comments(&lines),
+            low_pass: trained::low_pass(&lines),
         })
     }
 }

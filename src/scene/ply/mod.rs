@@ -41,6 +41,7 @@ pub(super) fn read(
     let header = PlyHeader::parse(&start).map_err(format)?;
     drop(start);
 
+    let mut antialiased = header.kind.map(|kind| kind == TrainerKind::Antialiased);
     let left = progress.total().saturating_sub(header.size);
     if packed::is(&header) {
         if let Some(property) = asked.first() {
@@ -57,7 +58,7 @@ pub(super) fn read(
         let (mut loaded, properties) = made.finish();
         loaded.format = Format::CompressedPly;
         note(&mut loaded.report, &header, false);
-        loaded.says(header.kind.map(|kind| kind == TrainerKind::Antialiased));
+        loaded.says(antialiased, header.low_pass);
         return Ok((loaded, properties));
     }
     let layout = Layout::from_header(&header, asked).map_err(format)?;
@@ -86,13 +87,14 @@ pub(super) fn read(
         let note = "took the colours from red, green and blue, since there is no f_dc_0";
         loaded.report.note(note.into());
     }
-    let mut antialiased = header.kind.map(|kind| kind == TrainerKind::Antialiased);
+    let mut low_pass = header.low_pass;
     if let Some(at) = properties
         .iter()
         .position(|property| property.name == trained::FILTER)
     {
         let unusable = trained::smooth(&mut loaded.gaussians, &properties[at].values);
         antialiased = Some(true);
+        low_pass = low_pass.or(Some(trained::LOW_PASS));
         loaded.report.note(format!(
             "smoothed the Gaussians by {}, and draws them antialiased, as Mip-Splatting does",
             trained::FILTER
@@ -107,7 +109,7 @@ pub(super) fn read(
             properties.remove(at);
         }
     }
-    loaded.says(antialiased);
+    loaded.says(antialiased, low_pass);
     Ok((loaded, properties))
 }
 

@@ -11,6 +11,8 @@ pub(super) const FILTER: &str = "filter_3D";
 
 /// The note on discs of 2DGS, which that intersects with each line of sight.
 pub(super) const DISCS: &str = "drew the discs of 2D Gaussian Splatting as flat Gaussians, which are projected, not intersected with each line of sight";
+/// The low-pass that Mip-Splatting trains with, px^2.
+pub(super) const LOW_PASS: f32 = 0.1;
 /// The third deviation of a disc, as a share of the smaller of the others.
 const FLAT: f32 = 1e-3;
 
@@ -44,11 +46,7 @@ impl TrainerKind {
     /// The kind by the last comment of a header that says one, if any does: `SplatRenderMode: mip` of Brush, which others write too, or
     /// `antialiased 1` of Postshot.
     pub(super) fn from_comments(lines: &[String]) -> Option<Self> {
-        lines.iter().rev().find_map(|line| {
-            let line = line.trim().to_ascii_lowercase();
-            let comment = line
-                .strip_prefix("comment")
-                .or_else(|| line.strip_prefix("obj_info"))?;
+        comments(lines).rev().find_map(|comment| {
             let mut words = comment.split_ascii_whitespace();
             match (words.next()?.trim_end_matches(':'), words.next()?) {
                 ("splatrendermode", "mip") | ("antialiased", "1") => Some(Self::Antialiased),
@@ -58,6 +56,34 @@ impl TrainerKind {
             }
         })
     }
+}
+
+/// What comments say, in small letters.
+fn comments(lines: &[String]) -> impl DoubleEndedIterator<Item = String> {
+    lines.iter().filter_map(|line| {
+        let line = line.trim().to_ascii_lowercase();
+        let comment = line
+            .strip_prefix("comment")
+            .or_else(|| line.strip_prefix("obj_info"));
+        comment.map(Into::into)
+    })
+}
+
+/// The low-pass by the last comment `LowPass: PX2`, as this writes it, or else that of Brush, which trains antialiased with the
+/// one of Mip-Splatting; others do so with that of 3DGS.
+pub(super) fn low_pass(lines: &[String]) -> Option<f32> {
+    let said = comments(lines).rev().find_map(|comment| {
+        let (name, value) = comment.split_once(':')?;
+        (name.trim() == "lowpass").then(|| value.trim().parse().ok())?
+    });
+    said.or_else(|| {
+        let is_of_brush = comments(lines).any(|comment| {
+            let mut words = comment.split(|sign: char| !sign.is_alphanumeric());
+            words.any(|word| word == "brush")
+        });
+        let kind = TrainerKind::from_comments(lines);
+        (is_of_brush && kind == Some(TrainerKind::Antialiased)).then_some(LOW_PASS)
+    })
 }
 
 /// Refuses Gaussians that are drawn in another way than those of 3DGS.
@@ -142,6 +168,32 @@ mod tests {
             (&[], None),
         ] {
             assert_eq!(kind(lines), expected, "{lines:?}");
+        }
+    }
+
+    #[test]
+    fn the_low_pass_is_what_a_comment_says_or_that_of_who_wrote_it() {
+        let found =
+            |lines: &[&str]| low_pass(&lines.iter().map(|l| l.to_string()).collect::<Vec<_>>());
+        let (brush, mip) = (
+            "comment Exported from Brush",
+            "comment SplatRenderMode: mip",
+        );
+        for (lines, expected) in [
+            (&[brush, mip][..], Some(0.1)),
+            (&[mip, "obj_info made by brush-app 0.3"], Some(0.1)),
+            (&[brush, "comment SplatRenderMode: default"], None),
+            (&[brush], None),
+            (&[mip], None),
+            (&[mip, "comment a brushed scene"], None),
+            (&[brush, mip, "comment LowPass: 0.25"], Some(0.25)),
+            (&["comment lowpass : 0.2"], Some(0.2)),
+            (
+                &["comment LowPass: 0.2", "comment LowPass: much"],
+                Some(0.2),
+            ),
+        ] {
+            assert_eq!(found(lines), expected, "{lines:?}");
         }
     }
 

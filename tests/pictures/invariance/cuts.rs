@@ -73,7 +73,7 @@ fn part(scene: &Gaussians, from: usize, to: usize) -> Gaussians {
         opacities: scene.opacities()[from..to].to_vec(),
         sh_degree: scene.sh_degree(),
         sh: scene.sh()[from * stride..to * stride].to_vec(),
-        antialiased: scene.is_antialiased(),
+        training: scene.training(),
     };
     Gaussians::new(part).expect("parts of what fits")
 }

@@ -2,6 +2,8 @@
 
 use serde_json::Value;
 
+use super::super::super::Training;
+
 use rara_base::counted::counted;
 use rara_base::error::shortened;
 
@@ -96,13 +98,16 @@ impl Harmonics<'_> {
     }
 }
 
+/// The name of the low-pass, which only this project writes.
+pub(in crate::formats) const LOW_PASS: &str = "lowPass";
+
 /// A whole `meta.json`.
 pub(super) struct Meta<'a> {
     /// Whether opacities are logits, as version 1 has them.
     pub(super) is_first: bool,
     pub(super) count: u64,
-    /// Whether they were trained antialiased.
-    pub(super) is_antialiased: bool,
+    /// How they were trained.
+    pub(super) training: Training,
     /// The ends of the logarithms of each axis.
     pub(super) bounds: Vec<[f64; 2]>,
     /// The pictures of the low and of the high bytes.
@@ -155,6 +160,8 @@ impl<'a> Meta<'a> {
                     .into(),
             );
         }
+        let low_pass = document.get(LOW_PASS).and_then(Value::as_f64);
+        let low_pass = low_pass.map_or(Training::default().low_pass, |value| value as f32);
         let antialias = document.get("antialias").and_then(Value::as_bool);
         let harmonics = match document.get("shN").filter(|part| !part.is_null()) {
             None => None,
@@ -197,7 +204,9 @@ impl<'a> Meta<'a> {
         Ok(Self {
             is_first: is_first && sh0.get("codebook").is_none(),
             count,
-            is_antialiased: antialias == Some(true) || model == Some("antialiased"),
+            training: Training::default()
+                .antialiased(antialias == Some(true) || model == Some("antialiased"))
+                .low_pass(low_pass),
             bounds: ends(means, "means", 3)?,
             means: [means_low, means_high],
             scales: (scales_file, Range::from_json(scales, "scales", 3)?),

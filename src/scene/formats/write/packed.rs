@@ -1,6 +1,6 @@
 //! Writing `.compressed.ply`.
 
-use super::super::super::save::antialiased_comment;
+use super::super::super::save::training_comments;
 use super::super::super::{Gaussians, SH_0};
 use super::{ANY, Ranges, along_a_curve, byte, smallest_three};
 
@@ -52,7 +52,7 @@ pub(super) fn encode(gaussians: &Gaussians) -> Vec<u8> {
     let chunks = order.chunks(CHUNK);
     let mut header = format!(
         "ply\nformat binary_little_endian 1.0\ncomment made by rara\n{}element chunk {}\n",
-        antialiased_comment(gaussians),
+        training_comments(gaussians),
         chunks.len()
     );
     for part in ["x", "scale_x", "r"] {

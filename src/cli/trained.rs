@@ -1,0 +1,178 @@
+//! `--antialiasing` and `--low-pass`: how layers were trained, which is how they are drawn.
+
+use std::path::Path;
+
+use clap::Args;
+use rara::scene::{Format, Training};
+
+use super::failure::Failure;
+use super::scene_layers::SceneLayers;
+use super::training;
+
+/// What flags say of how the scene was trained.
+#[derive(Debug, Default, Args)]
+pub(super) struct TrainedOptions {
+    /// Whether the scene was trained antialiased: on, off or auto
+    ///
+    /// Splats that the low-pass makes larger than they are then get no brighter, as scenes need it that were
+    /// trained antialiased (3DGS --antialiasing, gsplat, Mip-Splatting). auto, the default, goes by what the files
+    /// and the training's settings beside them say. NAME=on says it of one layer (repeatable).
+    #[arg(long, value_name = "on|off|auto")]
+    antialiasing: Vec<String>,
+    /// The low-pass that the scene was trained with, px^2, or auto
+    ///
+    /// It is added to the variance of each splat along either axis of the picture: 0.01 to 10. 3DGS, gsplat and
+    /// nerfstudio train with 0.3, Mip-Splatting and Brush's mip mode with 0.1. auto, the default, goes by what the
+    /// file says and who wrote it. NAME=0.1 says it of one layer (repeatable).
+    #[arg(long, value_name = "PX2|auto")]
+    low_pass: Vec<String>,
+}
+
+/// What a flag says of the layers of a name, or of all.
+struct TrainingNote<'a, T> {
+    /// The name of the layers; none for all.
+    name: Option<&'a str>,
+    /// What they are; none where that is found by the files.
+    value: Option<T>,
+}
+
+impl<'a, T> TrainingNote<'a, T> {
+    /// What the texts of a flag say. `read` takes a value that is not auto.
+    fn all(
+        flag: &str,
+        texts: &'a [String],
+        expected: &str,
+        read: impl Fn(&str) -> Option<T>,
+        loaded: &mut SceneLayers,
+    ) -> Result<Vec<Self>, Failure> {
+        let parsed = texts.iter().map(|text| {
+            // A name may hold the sign that ends it.
+            let (name, value) = match text.rsplit_once('=') {
+                Some((name, value)) => (Some(name), value),
+                None => (None, text.as_str()),
+            };
+            let value = match value.trim() {
+                "auto" => None,
+                value => Some(read(value).ok_or_else(|| {
+                    Failure::Usage(format!("{flag} {text}: expected {expected} for one layer"))
+                })?),
+            };
+            if let Some(name) = name {
+                loaded.named(flag, name)?;
+            }
+            Ok(Self { name, value })
+        });
+        parsed.collect()
+    }
+
+    /// What was said last of a layer; none where its file decides.
+    fn of_layer(all: &[Self], layer: &str) -> Option<T>
+    where
+        T: Copy,
+    {
+        let mut said = all.iter().rev();
+        said.find(|said| said.name.is_none_or(|name| name == layer))?
+            .value
+    }
+}
+
+/// What to say of a file, which says nothing itself, where the settings beside it say that it was trained antialiased.
+pub(super) fn trained(file: &Path) -> Option<String> {
+    let by = training::antialiased_by(file)?;
+    Some(format!(
+        "{}: it is drawn antialiased, as {} says that it was trained; --antialiasing off draws it as it is",
+        file.display(),
+        by.display()
+    ))
+}
+
+impl TrainedOptions {
+    /// The flags and what they say.
+    pub(super) fn texts(&self) -> [(&'static str, &[String]); 2] {
+        [
+            ("--antialiasing", &self.antialiasing),
+            ("--low-pass", &self.low_pass),
+        ]
+    }
+
+    /// Does what the flags say, and otherwise what the settings of the training say, with a note of it.
+    pub(super) fn apply(&self, loaded: &mut SceneLayers) -> Result<(), Failure> {
+        let on = |value: &str| match value {
+            "on" => Some(true),
+            "off" => Some(false),
+            _ => None,
+        };
+        let antialiasing = TrainingNote::all(
+            "--antialiasing",
+            &self.antialiasing,
+            "on, off or auto, or NAME=on",
+            on,
+            loaded,
+        )?;
+        let low_passes: Vec<TrainingNote<'_, f32>> = TrainingNote::all(
+            "--low-pass",
+            &self.low_pass,
+            "a number of square pixels or auto, or NAME=0.1",
+            |value| value.parse().ok(),
+            loaded,
+        )?;
+        for layer in &mut loaded.layers {
+            let trained = layer.trained.take();
+            let mut training = layer.gaussians.training();
+            if let Some(antialiased) = TrainingNote::of_layer(&antialiasing, &layer.name) {
+                training.antialiased = antialiased;
+            } else if let Some(note) = trained {
+                training.antialiased = true;
+                // Selections make several layers of a file.
+                if loaded.notes.last() != Some(&note) {
+                    loaded.notes.push(note);
+                }
+            }
+            if let Some(low_pass) = TrainingNote::of_layer(&low_passes, &layer.name) {
+                training.low_pass = low_pass;
+            }
+            let set = layer.gaussians.set_training(training);
+            set.map_err(|error| Failure::Usage(format!("--low-pass: {error}")))?;
+        }
+        Ok(())
+    }
+}
+
+/// Refuses layers that were trained in several ways where they become one set, which is drawn in one way. Hidden ones are left
+/// out of it.
+pub(super) fn check_alike(loaded: &SceneLayers) -> Result<(), Failure> {
+    let shown = loaded.layers.iter();
+    let mut shown = shown.filter(|layer| layer.state.visible && !layer.gaussians.is_empty());
+    let Some(first) = shown.next() else {
+        return Ok(());
+    };
+    let training = first.gaussians.training();
+    let other = shown.find(|layer| layer.gaussians.training() != training);
+    let Some(other) = other else { return Ok(()) };
+    let flag = match training.low_pass == other.gaussians.low_pass() {
+        true => "--antialiasing on or off",
+        false => "--low-pass",
+    };
+    Err(Failure::Usage(format!(
+        "the layer '{}' was trained {training} and '{}' {}, and a file of both can say only one of it: write them to a file each, \
+         or say {flag} for all",
+        first.name,
+        other.name,
+        other.gaussians.training()
+    )))
+}
+
+/// What to say where a file of this format says less of how its Gaussians were trained.
+pub(super) fn lost(format: Format, training: Training) -> Option<String> {
+    let has_other_low_pass = training.low_pass != Training::default().low_pass;
+    let low_pass = format!("--low-pass {}", training.low_pass);
+    let flags = match (format, training.antialiased, has_other_low_pass) {
+        (Format::Gltf, true, true) => format!("--antialiasing on {low_pass}"),
+        (Format::Gltf, true, false) => "--antialiasing on".into(),
+        (Format::Gltf | Format::Spz, _, true) => low_pass,
+        _ => return None,
+    };
+    Some(format!(
+        "{format} cannot say that the scene was trained {training}; draw the file with {flags}"
+    ))
+}

@@ -29,6 +29,7 @@ mod ink;
 mod json_kind;
 mod kept;
 mod layer_clip;
+mod layer_place;
 mod lens;
 mod measure;
 mod memory;

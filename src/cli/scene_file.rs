@@ -8,10 +8,11 @@ use std::str::FromStr;
 use glam::{DQuat, DVec3};
 use rara::clip::Expression;
 use rara::scene::Predicate;
-use rara::{Bounds, Clip, Error, Gaussians, Layer, LayerState, Placement, Result, Scene};
+use rara::{Bounds, Clip, Error, Gaussians, Layer, LayerState, Result, Scene};
 use serde::Deserialize;
 
 use super::json_kind;
+use super::layer_place::Place;
 use super::region::Region;
 
 /// A layer that is to be read.
@@ -21,6 +22,8 @@ pub(super) struct LayerEntry {
     pub(super) name: String,
     pub(super) path: PathBuf,
     pub(super) state: LayerState,
+    /// The factors by which its axes are stretched; none where they stay as they are.
+    pub(super) stretch: Option<DVec3>,
     /// Whether it was trained antialiased; none where its file says that.
     pub(super) antialiased: Option<bool>,
     /// The low-pass that it was trained with; none where its file says that.
@@ -220,7 +223,7 @@ struct LayerRecord {
     position: Option<[f64; 3]>,
     /// w, x, y, z.
     rotation: Option<[f64; 4]>,
-    scale: Option<f64>,
+    scale: Option<Scales>,
     opacity: Option<f32>,
     visible: Option<bool>,
     antialiased: Option<bool>,
@@ -230,6 +233,16 @@ struct LayerRecord {
     clip_expr: Option<String>,
     #[serde(default)]
     select: Vec<SelectionRecord>,
+}
+
+#[derive(Deserialize)]
+#[serde(
+    untagged,
+    expecting = "a scale is one number or one for each of the three axes"
+)]
+enum Scales {
+    One(f64),
+    OfAxes([f64; 3]),
 }
 
 /// A layer that is selected from another; what it does not say is as of that.
@@ -306,11 +319,15 @@ pub(super) fn read(path: &Path) -> Result<Vec<LayerEntry>> {
         let of_entry = |error: Error| format(format!("layer {number}: {error}"));
         let [w, x, y, z] = entry.rotation.unwrap_or([1.0, 0.0, 0.0, 0.0]);
         let position = DVec3::from(entry.position.unwrap_or_default());
-        let scale = entry.scale.unwrap_or(1.0);
-        let placement = Placement::new(position, DQuat::from_xyzw(x, y, z, w), scale);
+        let scales = match &entry.scale {
+            Some(Scales::One(scale)) => std::slice::from_ref(scale),
+            Some(Scales::OfAxes(scales)) => &scales[..],
+            None => &[1.0],
+        };
+        let place = Place::new(position, DQuat::from_xyzw(x, y, z, w), scales).map_err(of_entry)?;
         let clip = own_clip(entry.clip, entry.clip_expr).map_err(of_entry)?;
         let state = LayerState::default()
-            .placement(placement.map_err(of_entry)?)
+            .placement(place.placement)
             .opacity(entry.opacity.unwrap_or(1.0))
             .visible(entry.visible.unwrap_or(true));
         let path = folder.join(entry.path);
@@ -318,6 +335,7 @@ pub(super) fn read(path: &Path) -> Result<Vec<LayerEntry>> {
             name: entry.name.unwrap_or_else(|| stem(&path)),
             path,
             state,
+            stretch: Some(place.stretch),
             antialiased: entry.antialiased,
             low_pass: entry.low_pass,
             clip,

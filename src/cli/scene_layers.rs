@@ -1,5 +1,6 @@
 //! The layers of a scene that have been read.
 
+use glam::DVec3;
 use rara::clip::Expression;
 use rara::scene::{Format, Property};
 use rara::{Gaussians, Layer, LayerState};
@@ -9,13 +10,14 @@ use super::scene_file::{LayerClip, LayerEntry, SceneDescription};
 use super::select;
 
 /// A layer that has been read.
-#[derive(Default)]
 pub(super) struct LoadedLayer {
     pub(super) name: String,
     pub(super) gaussians: Gaussians,
     /// Its file's format; none where it comes from no file.
     pub(super) format: Option<Format>,
     pub(super) state: LayerState,
+    /// The factors by which its Gaussians' axes have been stretched since they were read.
+    pub(super) stretch: DVec3,
     pub(super) clip: Option<LayerClip>,
     /// Its place in the files, where it is a part of one.
     pub(super) numbers: Option<select::Numbers>,
@@ -45,7 +47,11 @@ impl LoadedLayer {
                 clip: clip.clone(),
             },
             clip,
-            ..Self::default()
+            stretch: DVec3::ONE,
+            gaussians: Gaussians::default(),
+            format: None,
+            numbers: None,
+            trained: None,
         }
     }
 

@@ -3,6 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use glam::DVec3;
+use rara::Error;
 
 use super::failure::Failure;
 use super::json_kind::JsonKind;
@@ -11,7 +13,7 @@ use super::reading::{self, Watch};
 use super::scene_file::{self, LayerEntry};
 use super::scene_layers::SceneLayers;
 use super::trained::TrainedOptions;
-use super::{layer_clip, place, select, trained, training, values};
+use super::{layer_clip, layer_place, place, select, trained, training, values};
 use rara::scene::Format;
 
 fn files() -> String {
@@ -20,7 +22,7 @@ fn files() -> String {
          which the last iteration counts. Several files are the layers of one scene. A layer has the name of its file, or a \
          name given as NAME=FILE. A .json file lists layers: \
          {{\"layers\":[{{\"path\":\"skin.ply\",\"name\":\"skin\",\"opacity\":0.5,\"visible\":true, \
-         \"antialiased\":true,\"low_pass\":0.3,\"position\":[x,y,z],\"rotation\":[w,x,y,z],\"scale\":s,\"clip\":{{...}} or \
+         \"antialiased\":true,\"low_pass\":0.3,\"position\":[x,y,z],\"rotation\":[w,x,y,z],\"scale\":s or [x,y,z],\"clip\":{{...}} or \
          \"clip_expr\":\"...\", \"select\":[{{\"name\":\"vessels\",\"where\":\"label in 3,4\"}}]}}]}}",
         Format::readable()
     )
@@ -54,9 +56,9 @@ pub(super) struct SceneArgs {
     trained: TrainedOptions,
     /// Place a layer: move:X,Y,Z turn:X,Y,Z,DEGREES scale:S (repeatable)
     ///
-    /// The place replaces what a list says of the layer. rotation:W,X,Y,Z is a quaternion in place of turn. Blanks
-    /// separate several. The layer is scaled, then turned about its own origin, then moved. Without NAME= all
-    /// layers are placed.
+    /// The place replaces what a list says of the layer. rotation:W,X,Y,Z is a quaternion in place of turn.
+    /// scale:X,Y,Z scales along each axis, and a negative number mirrors. Blanks separate several. The layer is
+    /// scaled, then turned about its own origin, then moved. Without NAME= all layers are placed.
     #[arg(long, value_name = "[NAME=]PLACE")]
     place: Vec<String>,
     /// Leave a layer out of the picture (repeatable)
@@ -158,7 +160,10 @@ fn load(
     let count = entries.len();
     let mut read = Vec::with_capacity(count);
     for (number, entry) in (1..).zip(entries) {
-        let (loaded, properties) = reading::read(&entry, (number, count), watch)?;
+        let (mut loaded, properties) = reading::read(&entry, (number, count), watch)?;
+        let stretch = entry.stretch.unwrap_or(DVec3::ONE);
+        layer_place::stretch(&mut loaded.gaussians, stretch)
+            .map_err(|error| Error::format(&entry.path, error.to_string()))?;
         read.push((entry, loaded, properties));
     }
     let files = read
@@ -184,10 +189,12 @@ fn load(
                 .map(|line| format!("{}: {line}", path.display())),
         );
         let count = loaded.gaussians.len() as u32;
+        let stretch = entry.stretch.unwrap_or(DVec3::ONE);
         let first = all.layers.len();
         all.add((entry, settled), loaded.gaussians, &properties, before)?;
         for layer in &mut all.layers[first..] {
             layer.format = Some(loaded.format);
+            layer.stretch = stretch;
             layer.trained.clone_from(&trained);
         }
         before = before.saturating_add(count);

@@ -140,6 +140,11 @@ impl Gaussians {
         &self.0
     }
 
+    /// The arrays, of which the numbers may be changed and not the lengths.
+    pub(super) fn arrays_mut(&mut self) -> &mut GaussianArrays {
+        &mut self.0
+    }
+
     /// Number of Gaussians.
     pub fn len(&self) -> usize {
         self.0.positions.len()

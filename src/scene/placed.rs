@@ -1,13 +1,13 @@
 //! Gaussians that are moved, turned and scaled for good.
 
-use glam::{DMat3, DVec3};
+use glam::{DAffine3, DMat3, DQuat, DVec3};
 
 use super::{Gaussians, sh_coefficients};
 use crate::harmonics::basis;
 use crate::placement::Placement;
 use rara_base::parallel::in_parallel;
 
-/// Gaussians whose spherical harmonics a thread turns at a time.
+/// Gaussians that a thread turns at a time.
 const CHUNK: usize = 1 << 10;
 
 impl Gaussians {
@@ -32,8 +32,46 @@ impl Gaussians {
             // Its length stays what it is, so that turning back gives the same bits.
             *rotation = (turn * rotation.as_dquat()).as_quat();
         }
-        let degree = self.sh_degree();
-        let bands = bands(DMat3::from_quat(turn), degree);
+        self.turn_harmonics(DMat3::from_quat(turn));
+        self.drop_infinite()
+    }
+
+    /// Applies a transform that may also mirror, shear, and scale unlike in different directions, to the Gaussians
+    /// themselves, in double precision: a covariance `C` becomes `M C Mᵀ`. The spherical harmonics follow the rotation that
+    /// is nearest to `M`, or the mirrored one where it mirrors.
+    ///
+    /// Gaussians that single precision cannot hold where they are placed are dropped. Returns their numbers before that,
+    /// which ascend.
+    #[must_use = "what was dropped is to be told"]
+    pub fn transform(&mut self, transform: &DAffine3) -> Vec<u32> {
+        for position in self.positions_mut() {
+            *position = transform.transform_point3(position.as_dvec3()).as_vec3();
+        }
+        let matrix = transform.matrix3;
+        let arrays = self.arrays_mut();
+        let shapes = arrays.scales.chunks_mut(CHUNK);
+        in_parallel(
+            shapes.zip(arrays.rotations.chunks_mut(CHUNK)),
+            |(scales, rotations)| {
+                for (scale, rotation) in scales.iter_mut().zip(rotations) {
+                    let turn = DMat3::from_quat(rotation.as_dquat());
+                    let axes = matrix * turn * DMat3::from_diagonal(scale.as_dvec3());
+                    let Axes { lengths, turn, .. } = Axes::of(axes);
+                    *scale = lengths.as_vec3();
+                    // An ellipsoid is its own mirror image.
+                    let turn = turn * turn.determinant().signum();
+                    *rotation = DQuat::from_mat3(&turn).normalize().as_quat();
+                }
+            },
+        );
+        let Axes { turn, from, .. } = Axes::of(matrix);
+        self.turn_harmonics(turn * from.transpose());
+        self.drop_infinite()
+    }
+
+    /// Turns the spherical harmonics by an orthogonal matrix, which may mirror.
+    fn turn_harmonics(&mut self, turn: DMat3) {
+        let bands = bands(turn, self.sh_degree());
         let coefficients = self.sh_coefficients();
         in_parallel(
             self.sh_mut().chunks_mut(CHUNK * 3 * coefficients),
@@ -45,7 +83,6 @@ impl Gaussians {
                 }
             },
         );
-        self.drop_infinite()
     }
 
     fn drop_infinite(&mut self) -> Vec<u32> {
@@ -60,6 +97,74 @@ impl Gaussians {
             self.keep(&kept);
         }
         dropped
+    }
+}
+
+/// The singular value decomposition of a matrix: `turn · diagonal(lengths) · fromᵀ`, with orthogonal matrices, of which
+/// `from` does not mirror.
+struct Axes {
+    turn: DMat3,
+    lengths: DVec3,
+    from: DMat3,
+}
+
+impl Axes {
+    /// By Jacobi's rotations of the columns, which keep the digits of short axes beside long ones. Columns that are
+    /// orthogonal stay as they are.
+    fn of(matrix: DMat3) -> Self {
+        // With the largest number 1, no square is out of range.
+        let size = matrix
+            .to_cols_array()
+            .into_iter()
+            .fold(0.0, |a: f64, b| a.max(b.abs()));
+        let scale = if size > 0.0 && size.is_finite() {
+            size
+        } else {
+            1.0
+        };
+        let mut columns = [0, 1, 2].map(|at| matrix.col(at) / scale);
+        let mut from = [DVec3::X, DVec3::Y, DVec3::Z];
+        for _ in 0..30 {
+            let mut is_done = true;
+            for (i, j) in [(0, 1), (0, 2), (1, 2)] {
+                let [a, b] = [columns[i], columns[j]];
+                let (dot, squares) = (a.dot(b), [a.length_squared(), b.length_squared()]);
+                if dot.abs() <= 1e-15 * (squares[0] * squares[1]).sqrt() {
+                    continue;
+                }
+                is_done = false;
+                let ratio = (squares[1] - squares[0]) / (2.0 * dot);
+                let tangent = 1.0_f64.copysign(ratio) / (ratio.abs() + ratio.hypot(1.0));
+                let cosine = tangent.hypot(1.0).recip();
+                let sine = cosine * tangent;
+                for all in [&mut columns, &mut from] {
+                    let [a, b] = [all[i], all[j]];
+                    (all[i], all[j]) = (cosine * a - sine * b, sine * a + cosine * b);
+                }
+            }
+            if is_done {
+                break;
+            }
+        }
+        let lengths = DVec3::from(columns.map(DVec3::length));
+        let least = 1e-14 * lengths.max_element();
+        // The direction of what is shorter is rounding, and may be anything at right angles to the others.
+        let mut turn = columns.map(|axis| (axis.length() > least).then(|| axis.normalize()));
+        for at in 0..3 {
+            let others = [turn[(at + 1) % 3], turn[(at + 2) % 3]];
+            if turn[at].is_none() {
+                turn[at] = Some(match others {
+                    [Some(a), Some(b)] => a.cross(b),
+                    [Some(a), None] | [None, Some(a)] => a.any_orthonormal_vector(),
+                    [None, None] => from[at],
+                });
+            }
+        }
+        Self {
+            turn: DMat3::from_cols_array_2d(&turn.map(|axis| axis.unwrap_or_default().to_array())),
+            lengths: lengths * scale,
+            from: DMat3::from_cols(from[0], from[1], from[2]),
+        }
     }
 }
 
@@ -81,7 +186,7 @@ fn turn_band(own: &mut [f32], first: usize, matrix: &Band) {
     }
 }
 
-/// How a turn changes the coefficients of each band from 1 to `degree`: the integral over the sphere of each function
+/// How a turn, which may mirror, changes the coefficients of each band from 1 to `degree`: the integral over the sphere of each function
 /// times each turned one. Their products are polynomials of degree 6 at most, for which the sum over four circles of
 /// eight points (Gauss and Legendre) is the integral.
 fn bands(turn: DMat3, degree: u32) -> Vec<Band> {
@@ -122,7 +227,7 @@ fn bands(turn: DMat3, degree: u32) -> Vec<Band> {
 
 #[cfg(test)]
 mod tests {
-    use glam::DQuat;
+    use glam::Vec3;
 
     use super::*;
     use crate::{Kind, generate};
@@ -163,6 +268,94 @@ mod tests {
             let turned = placed.rotations()[index].as_dquat() * DVec3::X;
             assert!((turn * axis).distance(turned) < 1e-6);
         }
+    }
+
+    /// A needle, a disc and a round one, each turned in its own way.
+    fn shapes() -> Gaussians {
+        let mut shapes = Gaussians::default();
+        for (number, scale) in [[1e3, 1e-3, 2e-3], [1.0, 1.0, 0.0], [0.5; 3]]
+            .into_iter()
+            .enumerate()
+        {
+            let turn = DQuat::from_xyzw(0.3, -0.5, 0.2 * number as f64, 0.9).normalize();
+            shapes.push(Vec3::X, scale.into(), turn.as_quat(), 0.5, &[0.0; 3]);
+        }
+        shapes
+    }
+
+    #[test]
+    fn covariances_follow_any_matrix() {
+        let turn = DMat3::from_quat(DQuat::from_xyzw(0.1, 0.2, -0.7, 0.4).normalize());
+        let shear = DMat3::from_cols(DVec3::X, DVec3::new(2.0, 1.0, 0.0), DVec3::Z);
+        let flat = DMat3::from_diagonal(DVec3::new(1.0, 3.0, 0.0));
+        let line = DMat3::from_diagonal(DVec3::X);
+        for matrix in [
+            turn,
+            -turn,
+            shear,
+            shear * turn,
+            turn * flat * shear,
+            turn * line,
+            DMat3::ZERO,
+        ] {
+            let (before, mut after) = (shapes(), shapes());
+            assert!(after.transform(&DAffine3::from_mat3(matrix)).is_empty());
+            after.check().expect("whole Gaussians");
+            for at in 0..before.len() {
+                // By the deviation in each direction, which keeps the digits of needles.
+                let along = |gaussians: &Gaussians, to: DVec3| {
+                    let axes = DMat3::from_quat(gaussians.rotations()[at].as_dquat());
+                    (gaussians.scales()[at].as_dvec3() * (axes.transpose() * to)).length()
+                };
+                for to in [DVec3::X, DVec3::Y, DVec3::Z, DVec3::ONE] {
+                    let (expected, found) =
+                        (along(&before, matrix.transpose() * to), along(&after, to));
+                    let size = after.scales()[at].max_element();
+                    let error = (expected - found).abs() / f64::from(size).max(1e-9);
+                    assert!(error < 1e-6, "{matrix} {at} {to}: {expected} {found}");
+                }
+            }
+        }
+        // The short axes of a needle keep their lengths, whatever turns it.
+        let mut needle = shapes();
+        assert!(needle.transform(&DAffine3::from_mat3(-turn)).is_empty());
+        for axis in 0..3 {
+            let [before, after] = [&shapes(), &needle].map(|all| all.scales()[0][axis]);
+            assert!((after / before - 1.0).abs() < 1e-6, "{before} {after}");
+        }
+    }
+
+    #[test]
+    fn a_transform_by_a_placement_is_the_placement() {
+        let mut placed = generate(Kind::General, 40, 3);
+        placed.set_sh_degree(3);
+        let mut transformed = placed.clone();
+        let turn = DQuat::from_xyzw(0.3, -0.5, 0.2, 0.9).normalize();
+        let placement = Placement::new(DVec3::new(4.0, -1.0, 2.5), turn, 0.35).expect("numbers");
+        let affine = DAffine3::from_scale_rotation_translation(
+            DVec3::splat(0.35),
+            turn,
+            placement.position(),
+        );
+        assert!(placed.place(&placement).is_empty() && transformed.transform(&affine).is_empty());
+        for at in 0..placed.len() {
+            let [a, b] = [&placed, &transformed];
+            assert!(a.positions()[at].distance(b.positions()[at]) < 1e-6);
+            assert!(a.scales()[at].distance(b.scales()[at]) < 1e-6);
+            assert!(a.rotations()[at].dot(b.rotations()[at]).abs() > 1.0 - 1e-6);
+            let apart = a
+                .sh_of(at)
+                .iter()
+                .zip(b.sh_of(at))
+                .map(|(a, b)| (a - b).abs());
+            assert!(apart.fold(0.0, f32::max) < 1e-6);
+        }
+        assert_eq!(
+            placed
+                .transform(&DAffine3::from_scale(DVec3::splat(f64::NAN)))
+                .len(),
+            40
+        );
     }
 
     #[test]

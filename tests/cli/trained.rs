@@ -293,6 +293,28 @@ fn layers_stand_where_they_are_placed() {
     assert!(place("") == listed && place("scene=") == listed);
     // In place of what the list says.
     assert!(drawn("@/list.json --place scene=scale:1") == drawn("@/scene.ply"));
+    // Scales of the axes, of which negative ones mirror.
+    let list = json!({"layers": [{"path": "scene.ply", "scale": [-2.0, 1.0, 0.5]}]});
+    fs::write(here.join("mirrored.json"), list.to_string()).expect("writes");
+    let mirrored = drawn("@/scene.ply --place scale:-2,1,0.5");
+    assert!(drawn("@/mirrored.json") == mirrored && mirrored != drawn("@/scene.ply"));
+    assert!(
+        drawn("@/scene.ply --place scale:7,1,1 --place scene=scale:-2,1,0.5") == mirrored
+            && drawn("@/mirrored.json --place scale:-2,1,0.5") == mirrored
+    );
+    done(line(
+        &here,
+        "convert @/scene.ply -o @/mirrored.ply --place scale:-2,1,0.5",
+    ));
+    let at = |name: &str| {
+        rara::scene::load(&here.join(name), &mut |_, _| ())
+            .expect("reads")
+            .gaussians
+    };
+    let [plain, mirrored] = [at("scene.ply"), at("mirrored.ply")];
+    for (from, to) in plain.positions().iter().zip(mirrored.positions()) {
+        assert!(to.distance(*from * rara::glam::Vec3::new(-2.0, 1.0, 0.5)) < 1e-5);
+    }
     let centre = |words: &str| {
         let info = document(line(&here, &format!("info {words} --json")));
         let axis = |end: &str| info["centres"][end][0].as_f64().expect("a number");
@@ -309,6 +331,8 @@ fn layers_stand_where_they_are_placed() {
         ("--place hair=scale:2", "no layer is called 'hair'"),
         ("--place scene=size:2", "'size:2' is none of move:X,Y,Z"),
         ("--place scale:0", "scale above zero"),
+        ("--place scale:1,0,1", "none of them 0"),
+        ("--place scale:1e30,1,1e39", "beyond single precision"),
     ] {
         refused(&line(&here, &format!("info @/scene.ply {words}")), 2, says);
     }

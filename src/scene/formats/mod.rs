@@ -14,6 +14,8 @@ mod write;
 use std::io::{Cursor, Read};
 use std::path::Path;
 
+use glam::DAffine3;
+
 pub(super) use self::write::WRITERS;
 use super::assemble::{Assembler, room};
 use super::failure::Failure;
@@ -81,6 +83,17 @@ impl FormatOutput {
     /// Places the Gaussians; what cannot be held there is dropped.
     fn place(&mut self, placement: &Placement) {
         let lost = self.gaussians.place(placement);
+        self.drop_lost(lost);
+    }
+
+    /// Applies a transform that is no placement; what cannot be held where it leads is dropped.
+    fn transform(&mut self, transform: &DAffine3) {
+        let lost = self.gaussians.transform(transform);
+        self.drop_lost(lost);
+    }
+
+    /// Drops the Gaussians of these numbers, which are gone.
+    fn drop_lost(&mut self, lost: Vec<u32>) {
         if lost.is_empty() {
             return;
         }

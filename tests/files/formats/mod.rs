@@ -5,6 +5,7 @@ mod damaged;
 mod detected;
 mod distance;
 mod harmonics;
+mod khr;
 mod truth;
 mod variants;
 mod written;

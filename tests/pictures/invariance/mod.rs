@@ -3,6 +3,7 @@
 
 mod cuts;
 mod layers;
+mod mirrors;
 mod similarity;
 mod worlds;
 

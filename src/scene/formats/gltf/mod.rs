@@ -13,6 +13,7 @@ use serde_json::Value;
 
 use self::accessor::Accessor;
 use self::buffers::Buffers;
+use self::nodes::Transform;
 use super::super::assemble::{ColumnForm, OPACITY, ROTATION, SCALES, SH};
 use super::super::{SH_0, sh_coefficients};
 use super::bytes::Bytes;
@@ -73,16 +74,21 @@ pub(super) fn read_document(
 ) -> Result<FormatOutput, Failure> {
     let mut buffers = Buffers::new(document, binary, folder);
     let mut whole = FormatOutput::default();
-    let (mut found, mut others) = (0_u64, 0_u64);
+    let (mut found, mut others, mut hidden) = (0_u64, 0_u64, 0_usize);
+    let turned = Transform::Similar(Placement::new(DVec3::ZERO, turn(), 1.0)?);
     let mut meshes = BTreeMap::new();
     check_extensions(document)?;
-    for (number, placement) in nodes::meshes(document, &mut buffers)? {
+    for (number, transform) in nodes::meshes(document, &mut buffers)? {
         let mesh = match meshes.entry(number) {
             Entry::Occupied(known) => known.into_mut(),
             Entry::Vacant(unknown) => unknown.insert(Mesh::from_json(document, number)?),
         };
         found += mesh.splats.len() as u64;
         others += mesh.others;
+        if transform.hides() {
+            hidden += mesh.splats.len();
+            continue;
+        }
         if found > MOST_PRIMITIVES {
             return Err(Failure::Format(format!(
                 "the glTF draws more than {MOST_PRIMITIVES} primitives of Gaussians; export the scene as one"
@@ -90,8 +96,10 @@ pub(super) fn read_document(
         }
         for &(primitive, extension) in &mesh.splats {
             let mut made = read_primitive(document, &mut buffers, primitive, extension)?;
-            let turned = Placement::new(DVec3::ZERO, turn(), 1.0)?;
-            made.place(&nodes::joined(&turned, &placement)?);
+            match turned.of_inner(&transform)? {
+                Transform::Similar(placement) => made.place(&placement),
+                Transform::Other(affine) => made.transform(&affine),
+            }
             whole.append(made)?;
             if whole.gaussians.len() / MOST_DRAWN > buffers.size() {
                 return Err(Failure::Format(format!(
@@ -107,6 +115,12 @@ pub(super) fn read_document(
             "the glTF has no Gaussians in its scene: none of its {others} drawn primitive(s) has {EXTENSION}; export them \
              with it"
         )));
+    }
+    if hidden > 0 {
+        whole.report.note(format!(
+            "left out {} of the glTF that are scaled to nothing",
+            counted(hidden, "primitive")
+        ));
     }
     let animations = list(document, "animations").len();
     if animations > 0 {

@@ -1,6 +1,6 @@
 //! The meshes that a document's scene draws, and where.
 
-use glam::{DMat3, DQuat, DVec3};
+use glam::{DAffine3, DMat3, DQuat, DVec3};
 use serde_json::Value;
 
 use super::super::Failure;
@@ -15,17 +15,59 @@ pub(super) const INSTANCES: &str = "EXT_mesh_gpu_instancing";
 /// How far the sides of a node's axes may be from each other, or from a right angle, to be one scale and a turn.
 const EVEN: f64 = 1e-4;
 
-/// The number of each mesh that the scene draws, with its placement in the scene.
+/// Where something stands in what it is a part of.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Transform {
+    Similar(Placement),
+    /// What shears, mirrors, or scales unlike in different directions.
+    Other(DAffine3),
+}
+
+impl Transform {
+    pub(super) const IDENTITY: Self = Self::Similar(Placement::IDENTITY);
+
+    /// The transform of something within what is transformed itself.
+    pub(super) fn of_inner(&self, inner: &Self) -> rara_base::error::Result<Self> {
+        match (self, inner) {
+            (_, Self::Similar(inner)) if *inner == Placement::IDENTITY => Ok(*self),
+            (Self::Similar(outer), Self::Similar(inner)) => Placement::new(
+                outer.to_world(inner.position()),
+                outer.rotation() * inner.rotation(),
+                outer.scale() * inner.scale(),
+            )
+            .map(Self::Similar),
+            _ => Ok(Self::Other(self.affine() * inner.affine())),
+        }
+    }
+
+    fn affine(&self) -> DAffine3 {
+        match self {
+            Self::Similar(placement) => DAffine3::from_scale_rotation_translation(
+                DVec3::splat(placement.scale()),
+                placement.rotation(),
+                placement.position(),
+            ),
+            Self::Other(affine) => *affine,
+        }
+    }
+
+    /// True where nothing is left of what it is of, by which a file hides it.
+    pub(super) fn hides(&self) -> bool {
+        matches!(self, Self::Other(affine) if affine.matrix3 == DMat3::ZERO)
+    }
+}
+
+/// The number of each mesh that the scene draws, with its transform in the scene.
 pub(super) fn meshes(
     document: &Value,
     buffers: &mut Buffers<'_>,
-) -> Result<Vec<(usize, Placement)>, Failure> {
+) -> Result<Vec<(usize, Transform)>, Failure> {
     let nodes = list(document, "nodes");
     let scenes = list(document, "scenes");
     if scenes.is_empty() {
         // A document without a scene is a library of meshes.
         let all = 0..list(document, "meshes").len();
-        return Ok(all.map(|mesh| (mesh, Placement::IDENTITY)).collect());
+        return Ok(all.map(|mesh| (mesh, Transform::IDENTITY)).collect());
     }
     let scene = document
         .get("scene")
@@ -40,7 +82,7 @@ pub(super) fn meshes(
     let mut found = Vec::new();
     let mut seen = vec![false; nodes.len()];
     let roots = indices(scene, "nodes")?.into_iter().rev();
-    let mut open: Vec<(usize, Placement)> = roots.map(|node| (node, Placement::IDENTITY)).collect();
+    let mut open: Vec<(usize, Transform)> = roots.map(|node| (node, Transform::IDENTITY)).collect();
     while let Some((at, parent)) = open.pop() {
         let wrong = |what: &str| {
             Failure::Format(format!(
@@ -51,14 +93,13 @@ pub(super) fn meshes(
         if std::mem::replace(&mut seen[at], true) {
             return Err(wrong("is in the scene twice, or its own child"));
         }
-        let own = placement(node).map_err(wrong)?;
-        let own = joined(&parent, &own)?;
+        let own = parent.of_inner(&transform(node).map_err(wrong)?)?;
         if let Some(mesh) = node.get("mesh") {
             let mesh = number(mesh).ok_or_else(|| wrong("has a mesh that is no number"))?;
             match node.get("extensions").and_then(|all| all.get(INSTANCES)) {
                 Some(instances) => {
-                    for instance in placements(document, buffers, instances, &wrong)? {
-                        found.push((mesh, joined(&own, &instance)?));
+                    for instance in instance_transforms(document, buffers, instances, &wrong)? {
+                        found.push((mesh, own.of_inner(&instance)?));
                     }
                 }
                 None => found.push((mesh, own)),
@@ -88,18 +129,6 @@ fn indices(object: &Value, key: &str) -> Result<Vec<usize>, Failure> {
     })
 }
 
-/// The placement of something within what is placed itself.
-pub(super) fn joined(outer: &Placement, inner: &Placement) -> rara_base::error::Result<Placement> {
-    if *inner == Placement::IDENTITY {
-        return Ok(*outer);
-    }
-    Placement::new(
-        outer.to_world(inner.position()),
-        outer.rotation() * inner.rotation(),
-        outer.scale() * inner.scale(),
-    )
-}
-
 /// So many numbers; nothing where there are none.
 fn numbers<const N: usize>(node: &Value, key: &str) -> Result<Option<[f64; N]>, &'static str> {
     let Some(value) = node.get(key) else {
@@ -113,13 +142,13 @@ fn numbers<const N: usize>(node: &Value, key: &str) -> Result<Option<[f64; N]>, 
     all.map(Some).ok_or(wrong)
 }
 
-/// The placement of each instance of a node; `wrong` says what is wrong with the node.
-fn placements(
+/// The transform of each instance of a node; `wrong` says what is wrong with the node.
+fn instance_transforms(
     document: &Value,
     buffers: &mut Buffers<'_>,
     instances: &Value,
     wrong: &dyn Fn(&str) -> Failure,
-) -> Result<Vec<Placement>, Failure> {
+) -> Result<Vec<Transform>, Failure> {
     let attributes = instances.get("attributes");
     const PARTS: [(&str, usize); 3] = [("TRANSLATION", 3), ("ROTATION", 4), ("SCALE", 3)];
     let count = PARTS
@@ -140,7 +169,7 @@ fn placements(
             Some(accessor) => accessor.at(instance, at),
             None => otherwise,
         };
-        placement_of(
+        transform_of(
             [0, 1, 2].map(|axis| value(0, axis, 0.0)),
             [0, 1, 2, 3].map(|at| value(1, at, if at == 3 { 1.0 } else { 0.0 })),
             [0, 1, 2].map(|axis| value(2, axis, 1.0)),
@@ -150,50 +179,60 @@ fn placements(
     all.map_err(|what| wrong(&format!("has an instance that {what}")))
 }
 
-const UNEVEN: &str = "scales unlike in different directions or shears, which Gaussians cannot follow: apply its transform";
-const MIRRORED: &str = "mirrors or is scaled to nothing, which is not read: apply its transform";
+const NOT_SENSIBLE: &str = "has a rotation of length 0, or numbers beyond all that is sensible";
 
-/// The placement by a translation, a rotation and scales, or what is wrong with them.
-fn placement_of(
+/// The transform by a translation, a rotation and scales, or what is wrong with them.
+fn transform_of(
     position: [f64; 3],
     rotation: [f64; 4],
-    [x, y, z]: [f64; 3],
-) -> Result<Placement, &'static str> {
-    if [x, y, z].iter().any(|scale| *scale <= 0.0) {
-        return Err(MIRRORED);
+    scales: [f64; 3],
+) -> Result<Transform, &'static str> {
+    let position = DVec3::from(position);
+    let [x, y, z] = scales;
+    if x > 0.0 && (x - y).abs() <= EVEN * x && (x - z).abs() <= EVEN * x {
+        let placement = Placement::new(position, DQuat::from_array(rotation), x);
+        return placement.map(Transform::Similar).map_err(|_| NOT_SENSIBLE);
     }
-    if (x - y).abs() > EVEN * x || (x - z).abs() > EVEN * x {
-        return Err(UNEVEN);
+    let rotation = Placement::new(position, DQuat::from_array(rotation), 1.0)
+        .map_err(|_| NOT_SENSIBLE)?
+        .rotation();
+    affine(DAffine3::from_scale_rotation_translation(
+        scales.into(),
+        rotation,
+        position,
+    ))
+}
+
+fn affine(affine: DAffine3) -> Result<Transform, &'static str> {
+    match affine.is_finite() {
+        true => Ok(Transform::Other(affine)),
+        false => Err(NOT_SENSIBLE),
     }
-    Placement::new(DVec3::from(position), DQuat::from_array(rotation), x)
-        .map_err(|_| "has a rotation of length 0, or numbers beyond all that is sensible")
 }
 
 /// A node's own transform, or what is wrong with it.
-fn placement(node: &Value) -> Result<Placement, &'static str> {
+fn transform(node: &Value) -> Result<Transform, &'static str> {
     if let Some(matrix) = numbers::<16>(node, "matrix")? {
-        let axes = DMat3::from_cols_array(&[
+        let columns = DAffine3::from_cols_array(&[
             matrix[0], matrix[1], matrix[2], matrix[4], matrix[5], matrix[6], matrix[8], matrix[9],
-            matrix[10],
+            matrix[10], matrix[12], matrix[13], matrix[14],
         ]);
-        let scale = axes.determinant().cbrt();
-        let turn = axes * scale.recip();
-        if scale > 0.0 && !(turn * turn.transpose()).abs_diff_eq(DMat3::IDENTITY, EVEN) {
-            return Err(UNEVEN);
-        }
-        let rotation = match scale > 0.0 {
-            true => DQuat::from_mat3(&turn),
-            false => DQuat::IDENTITY,
+        let scale = columns.matrix3.determinant().cbrt();
+        let turn = columns.matrix3 * scale.recip();
+        let is_similar =
+            scale > 0.0 && (turn * turn.transpose()).abs_diff_eq(DMat3::IDENTITY, EVEN);
+        return match is_similar {
+            true => transform_of(
+                columns.translation.to_array(),
+                DQuat::from_mat3(&turn).to_array(),
+                [scale; 3],
+            ),
+            false => affine(columns),
         };
-        return placement_of(
-            [matrix[12], matrix[13], matrix[14]],
-            rotation.to_array(),
-            [scale; 3],
-        );
     }
     let position = numbers::<3>(node, "translation")?.unwrap_or_default();
     let rotation = numbers::<4>(node, "rotation")?.unwrap_or([0.0, 0.0, 0.0, 1.0]);
-    placement_of(
+    transform_of(
         position,
         rotation,
         numbers::<3>(node, "scale")?.unwrap_or([1.0; 3]),

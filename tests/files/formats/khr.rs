@@ -1,5 +1,9 @@
 //! `KHR_gaussian_splatting`, row by row: each test has an asset of its own that differs from the plain one in one thing.
 
+use meshoptimizer_rs::Workspace;
+use meshoptimizer_rs::codec::{
+    ExpMode, VertexEncoding, encode_filter_exp, encode_filter_quat, encode_vertex_buffer,
+};
 use rara::Gaussians;
 use rara::glam::{DAffine3, DMat3, DQuat, DVec3, Quat, Vec3};
 use rara::scene::{LoadReport, load_from};
@@ -11,6 +15,9 @@ use std::path::Path;
 
 /// The extension, with whose name its attributes begin.
 const OWN: &str = "KHR_gaussian_splatting";
+
+/// Elements of so many parts, less one.
+const KINDS: [&str; 4] = ["SCALAR", "VEC2", "VEC3", "VEC4"];
 
 /// An asset of two Gaussians of degree 1, which tests change.
 struct Asset {
@@ -114,7 +121,7 @@ impl Asset {
             .flat_map(|value| value.to_le_bytes())
             .collect();
         let view = self.view(&bytes);
-        let kind = ["SCALAR", "VEC2", "VEC3", "VEC4"][values.len() / 2 - 1];
+        let kind = KINDS[values.len() / 2 - 1];
         let accessor = self
             .accessor(json!({"bufferView": view, "componentType": 5126, "count": 2, "type": kind}));
         self.primitive()["attributes"][name] = json!(accessor);
@@ -303,4 +310,262 @@ fn nodes_flatten_and_hide() {
             .iter()
             .all(|scale| scale.min_element() < 1e-7)
     );
+}
+
+/// Changes of elements, and elements of nothing else, which are zero.
+#[test]
+fn accessors_are_sparse() {
+    let scale = format!("{OWN}:SCALE");
+    for kind in [5121, 5123, 5125] {
+        let mut asset = Asset::new();
+        let number = asset.primitive()["attributes"][&scale].as_u64().unwrap() as usize;
+        let indices = asset.view(&[1, 0, 0, 0]);
+        let values = asset.view(&[3.0_f32, 4.0, 5.0].map(f32::to_le_bytes).concat());
+        let sparse = json!({"count": 1, "indices": {"bufferView": indices, "componentType": kind},
+            "values": {"bufferView": values}});
+        asset.document["accessors"][number]["sparse"] = sparse;
+        let scales = asset.load().unwrap().0.scales().to_vec();
+        assert_eq!(scales, [stored().scales()[0], Vec3::new(3.0, 4.0, 5.0)]);
+
+        asset.document["accessors"][number]
+            .as_object_mut()
+            .unwrap()
+            .remove("bufferView");
+        let scales = asset.load().unwrap().0.scales().to_vec();
+        assert_eq!(scales, [Vec3::ZERO, Vec3::new(3.0, 4.0, 5.0)]);
+    }
+    let mut asset = Asset::new();
+    let view = asset.view(&[1, 1, 2, 0]);
+    for (sparse, says) in [
+        (json!({}), "sparse without a count"),
+        (
+            json!({"count": 2, "indices": {"bufferView": view, "componentType": 5121},
+            "values": {"bufferView": 0}}),
+            "do not ascend",
+        ),
+        (
+            json!({"count": 1, "indices": {"bufferView": view, "byteOffset": 2, "componentType": 5121},
+            "values": {"bufferView": 0}}),
+            "end beyond its elements",
+        ),
+        (
+            json!({"count": 9, "indices": {"bufferView": view, "componentType": 5121},
+            "values": {"bufferView": 0}}),
+            "has not the bytes of 9 elements",
+        ),
+    ] {
+        asset.document["accessors"][0]["sparse"] = sparse;
+        let error = asset.load().unwrap_err().to_string();
+        assert!(
+            error.contains("POSITION") && error.contains(says),
+            "{error}"
+        );
+    }
+    // No bytes are behind this count.
+    let mut asset = Asset::new();
+    for accessor in asset.document["accessors"].as_array_mut().unwrap() {
+        accessor["count"] = json!(4_000_000_000_u64);
+        accessor.as_object_mut().unwrap().remove("bufferView");
+    }
+    let error = asset.load().unwrap_err().to_string();
+    assert!(error.contains("4000000000 Gaussians"), "{error}");
+}
+
+/// The types of components, their bytes and what they stand for, of which one is given.
+const TYPES: [(u32, bool, f64); 9] = [
+    (5120, false, 1.0),
+    (5120, true, 127.0),
+    (5121, false, 1.0),
+    (5121, true, 255.0),
+    (5122, false, 1.0),
+    (5122, true, 32767.0),
+    (5123, false, 1.0),
+    (5123, true, 65535.0),
+    (5126, false, 1.0),
+];
+
+#[test]
+fn attributes_are_of_all_types_that_are_allowed() {
+    for (name, parts, negative, types) in [
+        // The older text has signed scales and today's unsigned ones; positions are those of KHR_mesh_quantization.
+        ("POSITION".to_owned(), 3, true, &TYPES[..]),
+        (format!("{OWN}:SCALE"), 3, false, &TYPES[..]),
+        (format!("{OWN}:ROTATION"), 4, true, &TYPES[1..]),
+        (format!("{OWN}:OPACITY"), 1, false, &TYPES[..]),
+    ] {
+        for &(kind, normalized, most) in types {
+            // Of each element one part is 1, and where there are signs another one -1.
+            let mut values = vec![0.0; 2 * parts];
+            values[0] = most;
+            values[parts] = most;
+            if negative && [5120, 5122, 5126].contains(&kind) && !name.ends_with("ROTATION") {
+                values[2 * parts - 1] = -most;
+            }
+            let element: usize = match kind {
+                5126 => 4 * parts,
+                5122 | 5123 => (2 * parts).next_multiple_of(4),
+                _ => parts.next_multiple_of(4),
+            };
+            let mut bytes = Vec::new();
+            for values in values.chunks(parts) {
+                for &value in values {
+                    match kind {
+                        5120 => bytes.extend((value as i8).to_le_bytes()),
+                        5121 => bytes.extend((value as u8).to_le_bytes()),
+                        5122 => bytes.extend((value as i16).to_le_bytes()),
+                        5123 => bytes.extend((value as u16).to_le_bytes()),
+                        _ => bytes.extend((value as f32).to_le_bytes()),
+                    }
+                }
+                bytes.resize(bytes.len().next_multiple_of(element), 0);
+            }
+            let mut asset = Asset::new();
+            let view = asset.view(&bytes);
+            asset.document["bufferViews"][view]["byteStride"] = json!(element);
+            let accessor = asset.accessor(
+                json!({"bufferView": view, "componentType": kind, "count": 2,
+                "normalized": normalized, "type": KINDS[parts - 1]}),
+            );
+            asset.primitive()["attributes"][&name] = json!(accessor);
+            let (found, report) = asset.load().unwrap();
+            assert!(report.is_clean(), "{name} of {kind}: {report}");
+            let shares: Vec<f32> = values.iter().map(|value| (value / most) as f32).collect();
+            let ours: Vec<f32> = match parts {
+                1 => found.opacities().to_vec(),
+                4 => flat(found.rotations().iter().map(|q| {
+                    // Half a turn about z leads to our axes.
+                    (Quat::from_xyzw(0.0, 0.0, -1.0, 0.0) * *q).to_array()
+                })),
+                _ if name == "POSITION" => flat(
+                    found
+                        .positions()
+                        .iter()
+                        .map(|at| (to_ours().as_mat3() * *at).to_array()),
+                ),
+                _ => flat(found.scales().iter().map(Vec3::to_array)),
+            };
+            let apart = ours.iter().zip(&shares).map(|(a, b)| (a - b).abs());
+            assert!(
+                apart.fold(0.0, f32::max) < 1e-6,
+                "{name} of {kind}: {ours:?} {shares:?}"
+            );
+        }
+    }
+}
+
+/// Views that meshoptimizer compressed, by either extension and every filter that attributes of Gaussians can have.
+#[test]
+fn views_are_compressed_by_meshoptimizer() {
+    let scratch = &mut Workspace::default();
+    let (plain, _) = Asset::new().load().unwrap();
+    for (extension, version) in [
+        ("EXT_meshopt_compression", 0),
+        ("KHR_meshopt_compression", 1),
+    ] {
+        let encoding = VertexEncoding::new(version, 2).unwrap();
+        let stored = stored();
+        let rotations = flat(stored.rotations().iter().map(|q| q.to_array()));
+        let scales = flat(stored.scales().iter().map(Vec3::to_array));
+        let mut asset = Asset::new();
+        asset.document["extensionsRequired"] = json!([extension, "KHR_mesh_quantization"]);
+        let mut compress =
+            |name: &str, bytes: &[u8], stride: usize, filter: Option<&str>, kind: u32| {
+                let packed = encode_vertex_buffer(bytes, 2, stride, encoding, scratch).unwrap();
+                let view = asset.view(&packed);
+                // Its place in a buffer of nothing, which stands for what is not compressed.
+                let own = asset.document["bufferViews"][view].clone();
+                asset.document["bufferViews"][view] = json!({"buffer": 1, "byteLength": 2 * stride,
+                "byteStride": stride, "extensions": {extension: {"buffer": 0, "mode": "ATTRIBUTES",
+                "byteOffset": own["byteOffset"], "byteLength": own["byteLength"],
+                "byteStride": stride, "count": 2}}});
+                if let Some(filter) = filter {
+                    asset.document["bufferViews"][view]["extensions"][extension]["filter"] =
+                        json!(filter);
+                }
+                let parts = stride / if kind == 5122 { 2 } else { 4 };
+                let accessor = asset.accessor(
+                    json!({"bufferView": view, "componentType": kind, "count": 2,
+                "normalized": true, "type": KINDS[parts - 1]}),
+                );
+                asset.primitive()["attributes"][name] = json!(accessor);
+            };
+        let positions = flat(stored.positions().iter().map(Vec3::to_array));
+        let bytes = positions
+            .iter()
+            .flat_map(|value| value.to_le_bytes())
+            .collect::<Vec<_>>();
+        compress("POSITION", &bytes, 12, None, 5126);
+        let scratch = &mut Workspace::default();
+        let bytes = encode_filter_quat(2, 8, 16, &rotations, scratch).unwrap();
+        compress(
+            &format!("{OWN}:ROTATION"),
+            &bytes,
+            8,
+            Some("QUATERNION"),
+            5122,
+        );
+        let bytes = encode_filter_exp(2, 12, 24, &scales, ExpMode::Separate, scratch).unwrap();
+        compress(
+            &format!("{OWN}:SCALE"),
+            &bytes,
+            12,
+            Some("EXPONENTIAL"),
+            5126,
+        );
+        let (found, report) = asset.load().unwrap();
+        assert!(report.is_clean(), "{report}");
+        assert_eq!(found.positions(), plain.positions());
+        for at in 0..2 {
+            assert!(found.rotations()[at].dot(plain.rotations()[at]).abs() > 1.0 - 1e-6);
+            assert!(found.scales()[at].distance(plain.scales()[at]) < 1e-6);
+        }
+        let views = asset.document["bufferViews"].as_array().unwrap().len();
+        for (key, value, says) in [
+            (
+                "filter",
+                json!("CURLY"),
+                "with the filter CURLY, which is not read",
+            ),
+            (
+                "mode",
+                json!("CURLY"),
+                "with the mode CURLY, which is not read",
+            ),
+            ("count", json!(1_u64 << 40), "as it says"),
+            ("byteOffset", json!(1), "as it says"),
+            (
+                "byteStride",
+                json!(null),
+                "has no count, byteStride or mode",
+            ),
+        ] {
+            let mut asset = Asset {
+                document: asset.document.clone(),
+                bytes: asset.bytes.clone(),
+            };
+            asset.document["bufferViews"][views - 1]["extensions"][extension][key] = value;
+            let error = asset.load().unwrap_err().to_string();
+            assert!(error.contains(says) && error.contains(extension), "{error}");
+        }
+    }
+}
+
+/// What an asset has beside Gaussians that are drawn is said.
+#[test]
+fn what_is_left_out_is_said() {
+    let mut asset = Asset::new();
+    asset.document["skins"] = json!([{"joints": [0]}]);
+    let primitive = asset.primitive();
+    primitive["attributes"]["_LABEL"] = json!(0);
+    primitive["attributes"][format!("{OWN}:SH_DEGREE_4_COEF_0")] = json!(0);
+    primitive["attributes"]["COLOR_0"] = json!(0);
+    primitive["targets"] = json!([]);
+    let (_, report) = asset.load().unwrap();
+    let report = report.to_string();
+    for says in [
+        "left out 1 skin of the glTF",
+        "beside what is drawn: KHR_gaussian_splatting:SH_DEGREE_4_COEF_0, _LABEL, morph targets",
+    ] {
+        assert!(report.contains(says), "{report}");
+    }
 }

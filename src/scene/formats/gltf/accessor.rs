@@ -11,11 +11,13 @@ use rara_base::error::shortened;
 /// An attribute's numbers in memory.
 pub(super) struct Accessor {
     bytes: Vec<u8>,
-    /// Bytes from one element to the next, and of one part.
+    /// Bytes from one element to the next.
     stride: usize,
     kind: ComponentType,
     parts: usize,
     normalized: bool,
+    /// The elements that have other numbers, which ascend, and the bytes of these one behind the other.
+    sparse: (Vec<u64>, Vec<u8>),
 }
 
 #[derive(Clone, Copy)]
@@ -29,6 +31,19 @@ enum ComponentType {
 }
 
 impl ComponentType {
+    /// The type that something's numbers are of.
+    fn from_json(of: &Value) -> Option<Self> {
+        Some(match index(of, "componentType")? {
+            5120 => Self::I8,
+            5121 => Self::U8,
+            5122 => Self::I16,
+            5123 => Self::U16,
+            5125 => Self::U32,
+            5126 => Self::F32,
+            _ => return None,
+        })
+    }
+
     fn size(self) -> usize {
         match self {
             Self::I8 | Self::U8 => 1,
@@ -70,24 +85,14 @@ impl Accessor {
         };
         let accessor = list(document, "accessors").get(number);
         let accessor = accessor.ok_or_else(|| wrong("has an accessor that there is not"))?;
-        if accessor.get("sparse").is_some() {
-            return Err(wrong("is sparse, which is not read"));
-        }
         if index(accessor, "count") != Some(count) {
             return Err(wrong(&format!(
                 "is not of {} as the others are",
                 counted(count, "element")
             )));
         }
-        let kind = match index(accessor, "componentType") {
-            Some(5120) => ComponentType::I8,
-            Some(5121) => ComponentType::U8,
-            Some(5122) => ComponentType::I16,
-            Some(5123) => ComponentType::U16,
-            Some(5125) => ComponentType::U32,
-            Some(5126) => ComponentType::F32,
-            _ => return Err(wrong("is of no known type of numbers")),
-        };
+        let no_type = || wrong("is of no known type of numbers");
+        let kind = ComponentType::from_json(accessor).ok_or_else(no_type)?;
         let found = match accessor.get("type").and_then(Value::as_str) {
             Some("SCALAR") => 1,
             Some("VEC2") => 2,
@@ -98,40 +103,51 @@ impl Accessor {
         if found != parts && !(name == "COLOR_0" && found == 3) {
             return Err(wrong(&format!("has not {}", counted(parts, "part"))));
         }
-        let view = index(accessor, "bufferView").ok_or_else(|| wrong("has no bufferView"))?;
-        let (bytes, stride) = buffers.view(document, view)?;
         let element = found * kind.size();
-        let stride = stride.unwrap_or(element);
-        let offset = index(accessor, "byteOffset").unwrap_or(0);
-        let size = match count.checked_sub(1) {
-            Some(others) => others
-                .checked_mul(stride as u64)
-                .and_then(|size| size.checked_add(element as u64)),
-            None => Some(0),
+        let mut read = |part: &Value, count: u64, element: usize| {
+            elements(document, buffers, part, count, element)?.ok_or_else(|| {
+                wrong(&format!(
+                    "has not the bytes of {}; it may be cut off",
+                    counted(count, "element")
+                ))
+            })
         };
-        let range = size.and_then(|size| {
-            let first = usize::try_from(offset).ok()?;
-            first
-                .checked_add(usize::try_from(size).ok()?)
-                .map(|end| first..end)
-        });
-        let bytes = range
-            .and_then(|range| bytes.get(range))
-            .filter(|_| stride >= element);
-        let bytes = bytes.ok_or_else(|| {
-            wrong(&format!(
-                "has not the bytes of {}; it may be cut off",
-                counted(count, "element")
-            ))
-        })?;
+        let (bytes, stride) = match accessor.get("bufferView") {
+            Some(_) => read(accessor, count, element)?,
+            // What sparse elements do not replace is zero then.
+            None => (vec![0; element], 0),
+        };
+        let mut sparse = (Vec::new(), Vec::new());
+        if let Some(part) = accessor.get("sparse") {
+            let no_part = || wrong("is sparse without a count, indices or values");
+            let [indices, values] = ["indices", "values"].map(|key| part.get(key));
+            let replaced = index(part, "count").ok_or_else(no_part)?;
+            let (indices, values) = indices.zip(values).ok_or_else(no_part)?;
+            let kind = ComponentType::from_json(indices).ok_or_else(no_type)?;
+            let (places, stride) = read(indices, replaced, kind.size())?;
+            let place = |at: usize| kind.number(&places[at * stride..]).0 as u64;
+            sparse.0 = (0..replaced as usize).map(place).collect();
+            let is_in_order = sparse.0.windows(2).all(|pair| pair[0] < pair[1]);
+            if !is_in_order || sparse.0.last().is_some_and(|last| *last >= count) {
+                return Err(wrong(
+                    "has sparse indices that do not ascend, or end beyond its elements",
+                ));
+            }
+            let (bytes, stride) = read(values, replaced, element)?;
+            sparse.1 = (0..replaced as usize)
+                .flat_map(|at| &bytes[at * stride..][..element])
+                .copied()
+                .collect();
+        }
         Ok(Self {
-            bytes: bytes.to_vec(),
+            bytes,
             stride,
             kind,
             parts: found,
             // Of floats it means nothing.
             normalized: !matches!(kind, ComponentType::F32)
                 && accessor.get("normalized").and_then(Value::as_bool) == Some(true),
+            sparse,
         })
     }
 
@@ -140,12 +156,42 @@ impl Accessor {
         if part >= self.parts {
             return 1.0;
         }
-        let at = element as usize * self.stride + part * self.kind.size();
-        let (number, most) = self.kind.number(&self.bytes[at..]);
+        let size = self.kind.size();
+        let (places, values) = &self.sparse;
+        let bytes = match places.binary_search(&element) {
+            Ok(at) => &values[at * self.parts * size..],
+            Err(_) => &self.bytes[element as usize * self.stride..],
+        };
+        let (number, most) = self.kind.number(&bytes[part * size..]);
         if self.normalized {
             (number / most).max(-1.0)
         } else {
             number
         }
     }
+}
+
+/// The bytes of so many elements of a size, and those from one to the next; `None` where there are not as many.
+fn elements(
+    document: &Value,
+    buffers: &mut Buffers<'_>,
+    of: &Value,
+    count: u64,
+    element: usize,
+) -> Result<Option<(Vec<u8>, usize)>, Failure> {
+    let Some(view) = index(of, "bufferView") else {
+        return Ok(None);
+    };
+    let (bytes, stride) = buffers.view(document, view)?;
+    let stride = stride.unwrap_or(element);
+    let range = || {
+        let first = usize::try_from(index(of, "byteOffset").unwrap_or(0)).ok()?;
+        let size = match usize::try_from(count).ok()?.checked_sub(1) {
+            Some(others) => others.checked_mul(stride)?.checked_add(element)?,
+            None => 0,
+        };
+        bytes.get(first..first.checked_add(size)?)
+    };
+    let bytes = range().filter(|_| stride >= element);
+    Ok(bytes.map(|bytes| (bytes.to_vec(), stride)))
 }

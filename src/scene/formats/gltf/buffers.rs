@@ -6,11 +6,21 @@ use std::path::Path;
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD_NO_PAD;
+use meshoptimizer_rs::codec::{
+    decode_filter_color, decode_filter_exp, decode_filter_oct, decode_filter_quat,
+    decode_index_buffer, decode_index_sequence, decode_vertex_buffer,
+};
+use meshoptimizer_rs::{Error, Workspace};
 use percent_encoding::percent_decode_str;
 use serde_json::Value;
 
 use super::super::{Failure, beside};
 use super::{index, list};
+use rara_base::counted::counted;
+use rara_base::error::shortened;
+
+/// What names of the compression of views by meshoptimizer begin or end with: Khronos' and the older one.
+const MESHOPT: &str = "_meshopt_compression";
 
 /// Buffers, each read when it is first asked for.
 pub(super) struct Buffers<'a> {
@@ -18,6 +28,8 @@ pub(super) struct Buffers<'a> {
     binary: Option<&'a [u8]>,
     folder: Option<&'a Path>,
     read: BTreeMap<usize, Cow<'a, [u8]>>,
+    /// The bytes of views that were compressed.
+    decoded: BTreeMap<u64, Vec<u8>>,
 }
 
 impl<'a> Buffers<'a> {
@@ -34,6 +46,7 @@ impl<'a> Buffers<'a> {
             binary,
             folder,
             read: BTreeMap::new(),
+            decoded: BTreeMap::new(),
         }
     }
 
@@ -57,9 +70,68 @@ impl<'a> Buffers<'a> {
         Ok(&self.read[&number])
     }
 
-    /// Bytes of all buffers that were needed so far.
+    /// Bytes of all buffers that were needed so far, and of what was decompressed.
     pub(super) fn size(&self) -> usize {
-        self.read.values().map(|bytes| bytes.len()).sum()
+        let read = self.read.values().map(|bytes| bytes.len());
+        read.chain(self.decoded.values().map(Vec::len)).sum()
+    }
+
+    /// The bytes that a view, or what it says of its compression, has in its buffer.
+    fn bytes(&mut self, of: &Value, wrong: &dyn Fn(&str) -> Failure) -> Result<&[u8], Failure> {
+        let size = |key: &str| index(of, key).and_then(|size| usize::try_from(size).ok());
+        let first = size("byteOffset").unwrap_or(0);
+        let end = size("byteLength").and_then(|length| first.checked_add(length));
+        let buffer = size("buffer").ok_or_else(|| wrong("has no buffer"))?;
+        let bytes = self.read(buffer)?;
+        let bytes = end.and_then(|end| bytes.get(first..end));
+        bytes.ok_or_else(|| wrong("reaches beyond its buffer, which may be cut off"))
+    }
+
+    /// Decompresses a view by meshoptimizer, as the extension of a name says.
+    fn decode(
+        &mut self,
+        name: &str,
+        part: &Value,
+        wrong: &dyn Fn(&str) -> Failure,
+    ) -> Result<Vec<u8>, Failure> {
+        let name = shortened(name);
+        let unknown = |what: &str, word: &str| {
+            wrong(&format!(
+                "is compressed by {name} with the {what} {}, which is not read",
+                shortened(word)
+            ))
+        };
+        let no_layout = || wrong(&format!("has no count, byteStride or mode of {name}"));
+        let size = |key: &str| index(part, key).and_then(|size| usize::try_from(size).ok());
+        let (count, stride) = size("count")
+            .zip(size("byteStride"))
+            .ok_or_else(no_layout)?;
+        let mode = part.get("mode").and_then(Value::as_str);
+        let decode = match mode.ok_or_else(no_layout)? {
+            "ATTRIBUTES" => decode_vertex_buffer,
+            "TRIANGLES" => decode_index_buffer,
+            "INDICES" => decode_index_sequence,
+            mode => return Err(unknown("mode", mode)),
+        };
+        let filter = match part.get("filter").and_then(Value::as_str).unwrap_or("NONE") {
+            "NONE" => |_: &mut [u8], _, _, _: &mut Workspace| Ok(()),
+            "OCTAHEDRAL" => decode_filter_oct,
+            "QUATERNION" => decode_filter_quat,
+            "EXPONENTIAL" => decode_filter_exp,
+            "COLOR" => decode_filter_color,
+            filter => return Err(unknown("filter", filter)),
+        };
+        let source = self.bytes(part, wrong)?;
+        // It takes no memory for more than the source can be.
+        let scratch = &mut Workspace::default();
+        let decoded = decode(count, stride, source, scratch).and_then(|mut bytes| {
+            filter(&mut bytes, count, stride, scratch)?;
+            Ok(bytes)
+        });
+        decoded.map_err(|error| match error {
+            Error::AllocationFailed => Failure::Memory(counted(count, "element")),
+            error => wrong(&format!("is not compressed by {name} as it says ({error})")),
+        })
     }
 
     /// The bytes of a view, and those from one of its elements to the next where that is said.
@@ -77,27 +149,26 @@ impl<'a> Buffers<'a> {
             .ok()
             .and_then(|at| list(document, "bufferViews").get(at));
         let view = view.ok_or_else(|| wrong("is not there"))?;
+        let stride = index(view, "byteStride").and_then(|size| usize::try_from(size).ok());
         let extensions = view.get("extensions").and_then(Value::as_object);
-        if let Some(name) = extensions
+        let compression = extensions
             .into_iter()
             .flatten()
-            .map(|(name, _)| name)
-            .find(|n| n.contains("compression"))
-        {
-            let name = rara_base::error::shortened(name);
-            return Err(wrong(&format!(
-                "is compressed by {name}, which is not read"
-            )));
+            .find(|(name, _)| name.contains("compression"));
+        match compression {
+            Some((name, part)) if name.ends_with(MESHOPT) => {
+                if !self.decoded.contains_key(&number) {
+                    let decoded = self.decode(name, part, &wrong)?;
+                    self.decoded.insert(number, decoded);
+                }
+                Ok((&self.decoded[&number], stride))
+            }
+            Some((name, _)) => Err(wrong(&format!(
+                "is compressed by {}, which is not read",
+                shortened(name)
+            ))),
+            None => Ok((self.bytes(view, &wrong)?, stride)),
         }
-        let size = |key: &str| index(view, key).and_then(|size| usize::try_from(size).ok());
-        let first = size("byteOffset").unwrap_or(0);
-        let end = size("byteLength").and_then(|length| first.checked_add(length));
-        let buffer = size("buffer").ok_or_else(|| wrong("has no buffer"))?;
-        let bytes = self.read(buffer)?;
-        let bytes = end.and_then(|end| bytes.get(first..end));
-        let bytes =
-            bytes.ok_or_else(|| wrong("reaches beyond its buffer, which may be cut off"))?;
-        Ok((bytes, size("byteStride")))
     }
 }
 

@@ -28,7 +28,7 @@ pub(super) const EXTENSION: &str = "KHR_gaussian_splatting";
 const SPZ: &str = "KHR_gaussian_splatting_compression_spz";
 
 /// Gaussians that a byte of the buffers may be drawn as: even one of a compressed scene is no more than 52.
-const MOST_DRAWN: usize = 64;
+const MOST_DRAWN: u64 = 64;
 /// Primitives of Gaussians that a scene may draw.
 const MOST_PRIMITIVES: u64 = 1 << 16;
 
@@ -101,13 +101,7 @@ pub(super) fn read_document(
                 Transform::Other(affine) => made.transform(&affine),
             }
             whole.append(made)?;
-            if whole.gaussians.len() / MOST_DRAWN > buffers.size() {
-                return Err(Failure::Format(format!(
-                    "the glTF draws {} and more of {}, the same ones again and again; export the scene once",
-                    counted(whole.gaussians.len(), "Gaussian"),
-                    counted(buffers.size(), "byte")
-                )));
-            }
+            check_drawn(whole.gaussians.len() as u64, &buffers)?;
         }
     }
     if found == 0 {
@@ -122,12 +116,14 @@ pub(super) fn read_document(
             counted(hidden, "primitive")
         ));
     }
-    let animations = list(document, "animations").len();
-    if animations > 0 {
-        whole.report.note(format!(
-            "left out {} of the glTF: it is drawn as its nodes stand",
-            counted(animations, "animation")
-        ));
+    for (key, one) in [("animations", "animation"), ("skins", "skin")] {
+        let count = list(document, key).len();
+        if count > 0 {
+            whole.report.note(format!(
+                "left out {} of the glTF: it is drawn as its nodes stand",
+                counted(count, one)
+            ));
+        }
     }
     if others > 0 {
         whole.report.note(format!(
@@ -135,6 +131,18 @@ pub(super) fn read_document(
         ));
     }
     Ok(whole)
+}
+
+/// Refuses more Gaussians than the bytes are worth.
+fn check_drawn(count: u64, buffers: &Buffers<'_>) -> Result<(), Failure> {
+    match count / MOST_DRAWN > buffers.size() as u64 {
+        false => Ok(()),
+        true => Err(Failure::Format(format!(
+            "the glTF draws {} and more of {}, the same ones again and again; export the scene once",
+            counted(count, "Gaussian"),
+            counted(buffers.size(), "byte")
+        ))),
+    }
 }
 
 /// Refuses a document that requires an extension which may change its Gaussians in a way that is not known (glTF 2.0, 3.12).
@@ -295,6 +303,7 @@ fn read_primitive(
     if opacities.is_none() && colours.is_none() {
         return Err(Failure::Format(lacks(&own("OPACITY"))));
     }
+    check_drawn(count, buffers)?;
     // The text of the extension from January to April 2026 had logarithms, and today's has no negative scales.
     let has_logarithms = (0..count).any(|at| (0..3).any(|axis| scales.at(at, axis) < 0.0));
     let form = match has_logarithms {
@@ -329,12 +338,40 @@ fn read_primitive(
         Ok(())
     })?;
     notes.for_each(|note| made.report.note(note));
+    let left = attributes.and_then(Value::as_object).into_iter().flatten();
+    let left = left
+        .map(|(name, _)| &name[..])
+        .filter(|name| !is_read(name, degree));
+    let parts = [("indices", "indices"), ("targets", "morph targets")];
+    let parts = parts.iter().filter(|(key, _)| primitive.get(key).is_some());
+    let left: Vec<_> = left
+        .chain(parts.map(|(_, what)| *what))
+        .map(shortened)
+        .collect();
+    if !left.is_empty() {
+        made.report.note(format!(
+            "left out what the Gaussians have beside what is drawn: {}",
+            left.join(", ")
+        ));
+    }
     if has_logarithms {
         made.report.note(
             "took the scales for logarithms, as an older text of the extension has them, since some are negative".into(),
         );
     }
     Ok(made.into())
+}
+
+/// Whether an attribute is read of Gaussians of a degree, or is what others draw in their place.
+fn is_read(name: &str, degree: u32) -> bool {
+    let own = name
+        .strip_prefix(EXTENSION)
+        .and_then(|own| own.strip_prefix(':'));
+    match own {
+        Some("ROTATION" | "SCALE" | "OPACITY") => true,
+        Some(own) => (0..=degree).any(|band| own.starts_with(&format!("SH_DEGREE_{band}_"))),
+        None => ["POSITION", "COLOR_0"].contains(&name),
+    }
 }
 
 /// The accessor of an attribute.

@@ -327,6 +327,39 @@ fn placements() {
 }
 
 #[test]
+fn lenses_that_bend_lines() {
+    let folder = std::env::temp_dir().join(format!("rara-c-lens-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a temporary folder");
+    let put = |name: &str, text: &str| std::fs::write(folder.join(name), text).expect("a file");
+    put(
+        "cameras.txt",
+        "1 PINHOLE 9 7 8 8 4 3\n2 OPENCV_FISHEYE 9 7 8 8 4 3 .1 0 0 0\n",
+    );
+    put(
+        "images.txt",
+        "1 1 0 0 0 0 0 0 1 a\n\n2 1 0 0 0 0 0 0 2 b\n\n",
+    );
+    let path = CString::new(folder.to_str().expect("UTF-8")).expect("no NUL");
+    // SAFETY: strings that end in NUL, and as much room as the count says.
+    unsafe {
+        let size = size_of::<RaraCamera>();
+        let (mut cameras, mut one): ([RaraCamera; 2], RaraCamera) = std::mem::zeroed();
+        let (mut count, room) = (2, cameras.as_mut_ptr());
+        let result = rara_cameras_load(path.as_ptr(), room, size, null_mut(), &mut count);
+        assert_eq!((result, count), (RARA_OK, 2));
+        assert_eq!([cameras[0].width, cameras[1].width], [9, 0]);
+        assert!(cameras[1].camera().is_err());
+        let mut load =
+            |number, undistort| rara_camera_load(path.as_ptr(), number, undistort, &mut one, size);
+        assert_fails(load(1, 0), RARA_ERROR_FORMAT, "OPENCV_FISHEYE");
+        assert_fails(load(2, 0), RARA_ERROR_INVALID, "its last is 1");
+        assert_eq!(load(1, 1), RARA_OK);
+        assert_eq!(one, cameras[0], "they differ in the lens only");
+    }
+    std::fs::remove_dir_all(&folder).expect("ours");
+}
+
+#[test]
 fn cameras_of_files() {
     let camera = |name: &str, x: f64| {
         format!(
@@ -363,10 +396,11 @@ fn cameras_of_files() {
         let result = rara_cameras_load(name.as_ptr(), room.0, 3, room.1, &mut count);
         assert_fails(result, RARA_ERROR_INVALID, "sizeof(RaraCamera)");
         for ((ours, called), truth) in cameras.iter().zip(&names).zip(&truth) {
-            assert_eq!(ours.camera().expect("a camera"), truth.camera);
+            let camera = truth.camera().expect("a pinhole");
+            assert_eq!(ours.camera().expect("a camera"), camera);
             let name = CStr::from_ptr(called.text.as_ptr()).to_str();
             let name = name.expect("whole characters");
-            assert!(truth.name.starts_with(name) && name.len() >= truth.name.len().min(254));
+            assert!(truth.name().starts_with(name) && name.len() >= truth.name().len().min(254));
         }
     }
     std::fs::remove_file(&path).expect("is there");

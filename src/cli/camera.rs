@@ -11,7 +11,7 @@ use super::json_kind::JsonKind;
 use super::lens::{Depths, Lens, Ortho, UP, ortho};
 use super::views::{Framing, NamedView, Views, picked};
 use super::{aspect, output, training, values};
-use rara::camera_files;
+use rara::camera_files::{self, NamedCamera};
 
 pub(super) const HEADING: &str = "Camera";
 
@@ -68,6 +68,12 @@ pub(super) struct CameraArgs {
     /// "camera". With --view the file may hold a list of cameras.
     #[arg(long, value_name = "FILE")]
     camera: Option<PathBuf>,
+    /// Draw the pinholes of cameras whose lenses bend straight lines
+    ///
+    /// They have the same focal lengths and principal point, and no distortion: the pictures are those that a tool would make that
+    /// undistorts the photographs and leaves their size.
+    #[arg(long)]
+    undistort: bool,
     /// Keep what is at this depth or deeper, world units
     ///
     /// It is a plane across the view axis, which moves with the camera, cuts every layer, and cuts splats as --mode
@@ -214,25 +220,59 @@ impl CameraArgs {
         }
         let path = self.file(scenes, flag)?;
         let loaded = training::load_cameras(&path, scenes)
-            .map_err(|error| JsonKind::Cameras.wanted(&path, error))?
-            .into_iter()
-            .enumerate();
-        let mut views: Vec<NamedView> = loaded
-            .map(|(number, named)| NamedView {
-                number,
-                name: named.name,
-                camera: named.camera,
+            .map_err(|error| JsonKind::Cameras.wanted(&path, error))?;
+        let numbers = match wanted {
+            None => (0..loaded.len()).collect(),
+            Some(wanted) => {
+                let names: Vec<_> = loaded.iter().map(NamedCamera::name).collect();
+                let all = wanted.iter().map(|one| picked(&names, one, &path, flag));
+                all.collect::<Result<Vec<_>, _>>()?.concat()
+            }
+        };
+        let view = |number: &usize| {
+            let named = &loaded[*number];
+            Ok(NamedView {
+                number: *number,
+                name: named.name().to_owned(),
+                camera: self.depths().camera(self.sized(self.drawn(named)?)?)?,
             })
-            .collect();
-        if let Some(wanted) = wanted {
-            let all = wanted.iter().map(|one| picked(&views, one, &path, flag));
-            views = all.collect::<Result<Vec<_>, _>>()?.concat();
-        }
-        let depths = self.depths();
-        for view in &mut views {
-            view.camera = depths.camera(self.sized(view.camera)?)?;
-        }
+        };
+        let views = numbers.iter().map(view).collect::<Result<_, Failure>>()?;
+        self.say_what_changed(numbers.iter().map(|number| &loaded[*number]));
         Ok(views)
+    }
+
+    /// The camera that a picture is drawn by.
+    fn drawn(&self, named: &NamedCamera) -> rara::Result<Camera> {
+        match self.undistort {
+            true => named.undistorted(),
+            false => named.camera(),
+        }
+    }
+
+    /// Says what the cameras that are drawn have not as their file has it.
+    fn say_what_changed<'a>(&self, drawn: impl Iterator<Item = &'a NamedCamera>) {
+        let (mut bent, mut repaired) = (Vec::new(), Vec::new());
+        for named in drawn {
+            if let Some(lens) = named.distortion() {
+                let text = format!("its {lens} lens is drawn as a pinhole, without distortion");
+                bent.push((named.name(), text));
+            }
+            if !named.repairs().is_empty() {
+                repaired.push((named.name(), named.repairs().join(", and ")));
+            }
+        }
+        for changed in [bent, repaired] {
+            let Some((name, text)) = changed.first() else {
+                continue;
+            };
+            let others = match changed.len() - 1 {
+                0 => String::new(),
+                1 => "; 1 other camera is changed likewise".into(),
+                more => format!("; {more} other cameras are changed likewise"),
+            };
+            output::say(format_args!("note: camera {name}: {text}{others}"));
+        }
     }
 
     fn depths(&self) -> Depths {
@@ -260,7 +300,7 @@ impl CameraArgs {
             }]));
         }
         if let (Some(path), None) = (&self.camera, &self.view) {
-            let camera = depths.camera(self.sized(only(path, scenes)?)?)?;
+            let camera = depths.camera(self.sized(self.only(path, scenes)?)?)?;
             return Ok(Views::Given(vec![NamedView {
                 number: 0,
                 name: path.display().to_string(),
@@ -292,20 +332,25 @@ impl CameraArgs {
             None => Ok(camera),
         }
     }
-}
 
-fn only(path: &Path, scenes: &[PathBuf]) -> Result<Camera, Failure> {
-    let error = match camera_files::load_camera(path) {
-        Ok(camera) => return Ok(camera),
-        Err(error) => error,
-    };
-    match training::load_cameras(path, scenes).as_deref() {
-        Ok([only]) => Ok(only.camera),
-        Ok(several) => Err(Failure::Usage(format!(
-            "--camera {}: the file has {}: choose by --view, which takes numbers, names and all",
-            path.display(),
-            output::counted(several.len() as u64, "camera")
-        ))),
-        Err(_) => Err(JsonKind::Cameras.wanted(path, error)),
+    /// The camera of a file that has one.
+    fn only(&self, path: &Path, scenes: &[PathBuf]) -> Result<Camera, Failure> {
+        // A single camera is what the file should have.
+        let loaded = training::load_cameras(path, scenes).map_err(|error| {
+            let of_one = camera_files::load_camera(path).err().unwrap_or(error);
+            JsonKind::Cameras.wanted(path, of_one)
+        })?;
+        match &loaded[..] {
+            [only] => {
+                let camera = self.drawn(only)?;
+                self.say_what_changed([only].into_iter());
+                Ok(camera)
+            }
+            several => Err(Failure::Usage(format!(
+                "--camera {}: the file has {}: choose by --view, which takes numbers, names and all",
+                path.display(),
+                output::counted(several.len() as u64, "camera")
+            ))),
+        }
     }
 }

@@ -37,16 +37,14 @@ struct Move {
 }
 
 /// The cameras of the file `of`, a `transforms.json`, where the file `by` puts them.
-pub(super) fn place(cameras: &mut [NamedCamera], of: &Path, by: &Path) -> Result<()> {
+pub(super) fn place(cameras: Vec<NamedCamera>, of: &Path, by: &Path) -> Result<Vec<NamedCamera>> {
     let (transforms, applied) = (read::<Transforms>(by)?, read::<DataparserTransform>(of)?);
     let way = Move::new(&transforms, &applied).ok_or_else(|| {
         Error::format(by, "its transform and scale, or the applied ones of transforms.json, turn, move and scale nothing; \
              train again, or take this file away")
     })?;
-    for named in cameras {
-        named.camera = way.camera(&named.camera);
-    }
-    Ok(())
+    let placed = |named: NamedCamera| named.placed(|camera| way.camera(&camera));
+    Ok(cameras.into_iter().map(placed).collect())
 }
 
 impl Move {

@@ -111,7 +111,8 @@ mod tests {
         let again = camera_files::load_cameras(&file).expect("cameras");
         assert_eq!(again.len(), 3);
         for (again, view) in again.iter().zip(&views) {
-            assert_eq!((&again.name, again.camera), (&view.name, view.camera));
+            let camera = again.camera().expect("a pinhole");
+            assert_eq!((again.name(), camera), (&*view.name, view.camera));
         }
         save(Some(file.clone()))
             .save(views[..1].iter())

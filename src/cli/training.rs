@@ -124,7 +124,7 @@ pub(super) fn load_cameras(path: &Path, scenes: &[PathBuf]) -> rara::Result<Vec<
         .iter()
         .find_map(|scene| beside(scene, "dataparser_transforms.json"));
     if let Some(by) = moved.filter(|_| is_nerfstudio) {
-        dataparser::place(&mut cameras, path, &by)?;
+        cameras = dataparser::place(cameras, path, &by)?;
         output::say(format_args!(
             "note: the cameras are placed by {}",
             by.display()
@@ -143,7 +143,7 @@ pub(super) fn up_of(chosen: Option<DVec3>, scenes: &[PathBuf]) -> (DVec3, Option
     let of_cameras = scenes.iter().find_map(|scene| {
         let file = cameras(scene)?;
         let loaded = load_cameras(&file, scenes).ok()?;
-        let up = common_up(loaded.iter().map(|named| &named.camera))?;
+        let up = common_up(loaded.iter().filter_map(|named| named.undistorted().ok()))?;
         let note = format!(
             "note: up is {}, the mean of the cameras in {}; --up takes another direction",
             direction_text(up),
@@ -165,7 +165,7 @@ pub(super) fn up_of(chosen: Option<DVec3>, scenes: &[PathBuf]) -> (DVec3, Option
 }
 
 /// The direction that is up for most of these cameras: the mean of theirs, where they agree well enough to have one.
-fn common_up<'a>(cameras: impl Iterator<Item = &'a Camera>) -> Option<DVec3> {
+fn common_up(cameras: impl Iterator<Item = Camera>) -> Option<DVec3> {
     let (mut sum, mut count) = (DVec3::ZERO, 0_u32);
     for camera in cameras {
         sum -= camera.rotation.row(1); // down in the picture
@@ -206,13 +206,13 @@ mod tests {
             (0..6).map(camera).collect::<Vec<_>>()
         };
         for (up, text) in [(DVec3::Y, "y"), (DVec3::NEG_Y, "-y"), (DVec3::Z, "z")] {
-            let found = common_up(ring(up).iter()).expect("they agree");
+            let found = common_up(ring(up).into_iter()).expect("they agree");
             assert!(found.dot(up) > 0.99, "{found}");
             assert_eq!(direction_text(found), text);
         }
         let mut all = ring(DVec3::Y);
         all.extend(ring(DVec3::NEG_Y));
-        assert_eq!(common_up(all.iter()), None);
+        assert_eq!(common_up(all.into_iter()), None);
         assert_eq!(
             direction_text(DVec3::new(0.6, -0.8, 0.0)),
             "0.60,-0.80,0.00"

@@ -137,59 +137,52 @@ impl Views {
     }
 }
 
-/// The views that `wanted` means: a number from 0, a name that may leave out its ending, a range of numbers with both ends, as
-/// 3..6, or several of these with commas between them. A name goes before what else could be meant.
+/// The numbers of the cameras with these names that `wanted` means: a number from 0, a name that may leave out its ending, a range
+/// of numbers with both ends, as 3..6, or several of these with commas between them. A name goes before what else could be meant.
 pub(super) fn picked(
-    views: &[NamedView],
+    names: &[&str],
     wanted: &str,
     path: &Path,
     flag: &str,
-) -> Result<Vec<NamedView>, Failure> {
-    let whole = found(views, wanted);
+) -> Result<Vec<usize>, Failure> {
+    let whole = found(names, wanted);
     if whole.is_none() && wanted.contains(',') {
         let parts = wanted
             .split(',')
-            .map(|part| picked(views, part.trim(), path, flag));
+            .map(|part| picked(names, part.trim(), path, flag));
         let parts = parts.collect::<Result<Vec<_>, _>>()?;
         return Ok(parts.concat());
     }
-    let range = || {
+    let number = |text: &str| text.trim().parse().ok().filter(|n| *n < names.len());
+    let range = || -> Option<Vec<usize>> {
         let (first, last) = wanted.split_once("..")?;
-        let number = |text: &str| {
-            text.trim()
-                .parse::<usize>()
-                .ok()
-                .filter(|n| *n < views.len())
-        };
-        let (first, last) = (number(first)?, number(last)?);
-        let numbers = first.min(last)..=first.max(last);
-        let mut views = views[numbers].to_vec();
-        if last < first {
-            views.reverse();
-        }
-        Some(views)
+        let (first, last): (usize, usize) = (number(first)?, number(last)?);
+        Some(match last < first {
+            false => (first..=last).collect(),
+            true => (last..=first).rev().collect(),
+        })
     };
-    let picked = whole.map(|index| vec![views[index].clone()]);
+    let picked = whole.map(|number| vec![number]);
     picked.or_else(range).ok_or_else(|| {
-        let meant = values::meant(wanted, views.iter().map(|view| view.name.as_str()));
+        let meant = values::meant(wanted, names.iter().copied());
         Failure::Usage(format!(
             "{flag} {wanted}: {} has {}, and none of that number (from 0) or name{meant}",
             path.display(),
-            super::output::counted(views.len() as u64, "camera")
+            super::output::counted(names.len() as u64, "camera")
         ))
     })
 }
 
-/// The index of the view with the number or name `wanted`.
-fn found(views: &[NamedView], wanted: &str) -> Option<usize> {
+/// The number of the camera with the number or name `wanted`.
+fn found(names: &[&str], wanted: &str) -> Option<usize> {
     let stem = |name: &str| Path::new(name).file_stem().map(|s| s.to_owned());
-    let by_number = wanted.parse::<usize>().ok().filter(|n| *n < views.len());
+    let by_number = wanted.parse::<usize>().ok().filter(|n| *n < names.len());
     by_number
-        .or_else(|| views.iter().position(|v| v.name == wanted))
+        .or_else(|| names.iter().position(|name| *name == wanted))
         .or_else(|| {
-            views
+            names
                 .iter()
-                .position(|v| stem(&v.name).is_some_and(|s| s == wanted))
+                .position(|name| stem(name).is_some_and(|s| s == wanted))
         })
 }
 
@@ -199,20 +192,8 @@ mod tests {
 
     #[test]
     fn views_are_picked_by_number_name_stem_or_range() {
-        let camera = Camera::look_at(DVec3::ZERO, DVec3::Z, DVec3::NEG_Y, 50.0, (8, 8)).unwrap();
         let names = ["a.jpg", "b/7.png", "2", "0..1", "x,y"];
-        let views = || {
-            names.iter().enumerate().map(|(number, n)| NamedView {
-                number,
-                name: n.to_string(),
-                camera,
-            })
-        };
-        let views: Vec<_> = views().collect();
-        let numbers = |wanted| {
-            let picked = picked(&views, wanted, Path::new("f"), "--view");
-            picked.map(|picked| picked.iter().map(|view| view.number).collect::<Vec<_>>())
-        };
+        let numbers = |wanted| picked(&names, wanted, Path::new("f"), "--view");
         for (wanted, meant) in [
             ("1", &[1][..]),
             ("a.jpg", &[0]),

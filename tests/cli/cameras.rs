@@ -54,6 +54,53 @@ fn the_camera_that_is_reported_or_saved_draws_the_same_bytes() {
     }
 }
 
+/// Lenses that bend lines are refused where one is drawn, and --undistort draws their pinholes.
+#[test]
+fn lenses_that_bend_lines_are_drawn_as_pinholes_on_request() {
+    let here = folder("cameras_lenses");
+    scene(&here);
+    fs::create_dir(here.join("model")).expect("a folder");
+    let put =
+        |name: &str, text: &str| fs::write(here.join("model").join(name), text).expect("writes");
+    put(
+        "cameras.txt",
+        "1 PINHOLE 48 32 40 40 24 16\n2 OPENCV 48.25 32 40 40 24 16 .1 0 0 0\n3 OTHER 1 1\n",
+    );
+    put(
+        "images.txt",
+        "1 1 0 0 0 0 0 4 1 a\n\n2 1 0 0 0 0 0 4 2 b\n\n3 1 0 0 0 0 0 4 2 c\n\n4 1 0 0 0 0 0 4 3 d\n\n",
+    );
+    let render = |words: &str| {
+        line(
+            &here,
+            &format!("render @/scene.ply -o @/l_{{}}.exr --repeat 1 --cameras @/model {words}"),
+        )
+    };
+    done(render("--view a"));
+    for (view, says) in [
+        ("b", "`b` (camera 2 of cameras.txt) has the lens OPENCV"),
+        ("all", "--undistort draws that of the same focal lengths"),
+        ("d --undistort", "of the model OTHER, which is not known"),
+    ] {
+        let output = render(&format!("--view {view}"));
+        assert!(stderr(&output).contains("images.txt"));
+        refused(&output, 1, says);
+    }
+    let output = render("--view 0..2 --undistort");
+    let said = stderr(&output);
+    for says in [
+        "note: camera b: its OPENCV lens is drawn as a pinhole, without distortion; 1 other camera is changed likewise",
+        "note: camera b: its width of 48.25 pixels is taken for 48; 1 other camera is changed likewise",
+    ] {
+        assert!(said.contains(says), "{said}");
+    }
+    done(output);
+    let picture = |number: u32| fs::read(here.join(format!("l_{number}.exr"))).expect("a picture");
+    assert!(picture(0) == picture(1) && picture(1) == picture(2));
+    let output = line(&here, "render @/scene.ply -o @/x.png --undistort");
+    refused(&output, 2, "--undistort changes nothing without");
+}
+
 #[test]
 fn a_section_s_camera_and_plane_draw_it_again() {
     let here = folder("cameras_section");

@@ -42,6 +42,11 @@ fn load_json(text: &str) -> rara::Result<Vec<NamedCamera>> {
     load_cameras(&folder.file("cameras.json", text))
 }
 
+/// All of the cameras, as they are drawn.
+fn draw_json(text: &str) -> rara::Result<Vec<Camera>> {
+    load_json(text)?.iter().map(NamedCamera::camera).collect()
+}
+
 /// The camera that all the files below describe.
 pub(super) fn camera() -> Camera {
     let rotation = DQuat::from_xyzw(0.1, -0.3, 0.2, 0.9).normalize();
@@ -82,8 +87,8 @@ fn cameras_json() {
         inria_entry("a")
     ))
     .unwrap();
-    assert_eq!([&cameras[0].name, &cameras[1].name], ["b", "a"]);
-    assert_same(&cameras[0].camera, &camera());
+    assert_eq!([cameras[0].name(), cameras[1].name()], ["b", "a"]);
+    assert_same(&cameras[0].camera().unwrap(), &camera());
 }
 
 fn opengl_matrix() -> String {
@@ -102,20 +107,19 @@ fn transforms_json() {
         "frames": [{{"file_path": "images/1.png", "transform_matrix": {matrix}}}]}}"#
     ))
     .unwrap();
-    assert_eq!(shared[0].name, "images/1.png");
-    assert_same(&shared[0].camera, &camera());
+    assert_eq!(shared[0].name(), "images/1.png");
+    assert_same(&shared[0].camera().unwrap(), &camera());
     let own = load_json(&format!(
         r#"{{"w": 1, "h": 1, "fl_x": 1, "frames": [{{"w": 1000, "h": 600, "fl_x": 800, "fl_y": 810,
         "transform_matrix": {matrix}}}]}}"#
     ))
     .unwrap();
-    assert_eq!(own[0].name, "0");
-    assert_same(&own[0].camera, &camera());
-    let angle = load_json(&format!(
+    assert_eq!(own[0].name(), "0");
+    assert_same(&own[0].camera().unwrap(), &camera());
+    let angle = draw_json(&format!(
         r#"{{"camera_angle_x": 1.5707963267948966, "frames": [{{"transform_matrix": {matrix}}}]}}"#
     ))
-    .unwrap()[0]
-        .camera;
+    .unwrap()[0];
     assert!((angle.fx - 512.0).abs() < 1e-9 && angle.fx == angle.fy && angle.width == 1024);
 }
 
@@ -129,9 +133,9 @@ fn paths_of_the_viewer() {
             "camera_path": [{camera}, {camera}]}}"#
         )
     };
-    let cameras = load_json(&path("perspective", 90.0)).unwrap();
+    let cameras = draw_json(&path("perspective", 90.0)).unwrap();
     assert_eq!(cameras.len(), 2);
-    let camera = &cameras[1].camera;
+    let camera = &cameras[1];
     assert_eq!((camera.width, camera.height), (720, 480));
     assert!((camera.fx - 240.0).abs() < 1e-9 && (camera.fy - 240.0).abs() < 1e-9);
     // At (0, 0, 4) along -z, with y up.
@@ -149,7 +153,7 @@ fn paths_of_the_viewer() {
             "16 numbers",
         ),
     ] {
-        let message = load_json(&text).unwrap_err().to_string();
+        let message = draw_json(&text).unwrap_err().to_string();
         assert!(message.contains(says), "{message}");
     }
 }
@@ -167,7 +171,8 @@ fn one_camera() {
     let folder = Folder::new();
     let path = folder.file("camera.json", single());
     assert_same(&load_camera(&path).unwrap(), &camera());
-    assert_same(&load_cameras(&path).unwrap()[0].camera, &camera());
+    let list = load_cameras(&path).unwrap();
+    assert_same(&list[0].camera().unwrap(), &camera());
 }
 
 #[test]
@@ -178,12 +183,13 @@ fn lists_of_our_own_cameras() {
         1,
     );
     let cameras = load_json(&format!("[{named}, {}]", single())).unwrap();
-    assert_eq!([&cameras[0].name, &cameras[1].name], ["first", "1"]);
+    assert_eq!([cameras[0].name(), cameras[1].name()], ["first", "1"]);
     let given = camera().near_cut(Some(0.5)).clip_far(Some(7.0));
-    for (read, given) in [(&cameras[0].camera, given), (&cameras[1].camera, camera())] {
-        assert_same(read, &given);
+    for (read, given) in cameras.iter().zip([given, camera()]) {
+        let read = read.camera().unwrap();
+        assert_same(&read, &given);
         let depths = |camera: &Camera| (camera.clip_near, camera.clip_far, camera.near_cut);
-        assert_eq!(depths(read), depths(&given));
+        assert_eq!(depths(&read), depths(&given));
     }
     for (more, says) in [
         (
@@ -203,7 +209,7 @@ fn lists_of_our_own_cameras() {
             _ => single(),
         };
         let wrong = rest.replacen('{', &format!("{{{more}, "), 1);
-        let error = load_json(&format!("[{named}, {wrong}]"))
+        let error = draw_json(&format!("[{named}, {wrong}]"))
             .unwrap_err()
             .to_string();
         assert!(error.contains(says), "{error}");
@@ -218,7 +224,7 @@ fn an_eye_that_is_said_keeps_all_digits() {
     let with_eye = |matrix: &str, eye: DVec3| {
         let eye = json(eye.to_array());
         let text = single().replacen('{', &format!("{{\"eye\": {eye}, "), 1);
-        load_json(&format!("[{}]", text.replace(&whole, matrix))).unwrap()[0].camera
+        draw_json(&format!("[{}]", text.replace(&whole, matrix))).unwrap()[0]
     };
     let again = with_eye(&whole, camera.eye);
     assert_eq!((again.eye, again.rotation), (camera.eye, camera.rotation));
@@ -229,6 +235,149 @@ fn an_eye_that_is_said_keeps_all_digits() {
     let square = near.rotation * near.rotation.transpose();
     assert!(square.abs_diff_eq(glam::DMat3::IDENTITY, 1e-15), "{square}");
     assert!(near.rotation.abs_diff_eq(camera.rotation, 2e-6));
+}
+
+/// Only the cameras that are asked for have to be usable.
+#[test]
+fn lenses_that_bend_lines_are_named_where_they_are_drawn() {
+    let matrix = opengl_matrix();
+    let frame = |more: &str| format!(r#"{{{more}"transform_matrix": {matrix}}}"#);
+    let fisheye = r#""file_path": "b", "is_fisheye": true, "#;
+    let listed = r#""distortion_params": [0, 0, 0, 0, 0.01, 0], "#;
+    let frames = [
+        frame(""),
+        frame(r#""k1": 0.1, "#),
+        frame(r#""k6": 1e-9, "#),
+        frame(listed),
+        frame(fisheye),
+        frame(r#""camera_model": "FISHEYE624", "#),
+        frame(r#""w": 0, "#),
+    ];
+    let text = format!(
+        r#"{{"w": 1000, "h": 600, "fl_x": 800, "fl_y": 810, "cx": 500, "cy": 300, "frames": [{}]}}"#,
+        frames.join(", ")
+    );
+    let cameras = load_json(&text).unwrap();
+    assert_same(&cameras[0].camera().unwrap(), &camera());
+    assert_eq!(cameras[0].distortion(), None);
+    for (named, lens) in
+        cameras[1..6]
+            .iter()
+            .zip(["OPENCV", "OPENCV", "OPENCV", "OPENCV_FISHEYE", "FISHEYE624"])
+    {
+        assert_eq!(named.distortion(), Some(lens));
+        let message = named.camera().unwrap_err().to_string();
+        for says in [named.name(), lens, "cameras.json", "--undistort"] {
+            assert!(message.contains(says), "{message}");
+        }
+        assert_same(&named.undistorted().unwrap(), &camera());
+    }
+    let message = cameras[6].undistorted().unwrap_err().to_string();
+    assert!(message.contains("width 0"), "{message}");
+}
+
+/// Numbers that are none of a camera's, and what is made of them.
+#[test]
+fn rounded_scaled_and_fractional_cameras_are_repaired_and_said() {
+    let rotation = camera().rotation;
+    let to_world = |scale: f64, digits: i32| {
+        let round = |v: f64| (v * 10_f64.powi(digits)).round() / 10_f64.powi(digits);
+        rotation
+            .transpose()
+            .to_cols_array_2d()
+            .map(|column| column.map(|v| scale * round(v)))
+    };
+    let inria = |[x, y, z]: [[f64; 3]; 3]| {
+        let rows: Vec<_> = (0..3).map(|i| json([x[i], y[i], z[i]])).collect();
+        format!(
+            r#"[{{"width": 1000, "height": 600, "position": {}, "rotation": [{}], "fx": 800, "fy": 810}}]"#,
+            json(camera().eye.to_array()),
+            rows.join(", ")
+        )
+    };
+    let nerfstudio = |[x, y, z]: [[f64; 3]; 3], w: f64, last: &str| {
+        let e = camera().eye;
+        let row = |i: usize| json([x[i], -y[i], -z[i], e[i]]);
+        format!(
+            r#"{{"w": {w}, "h": 600, "fl_x": 800, "fl_y": 810, "cx": 500, "cy": 300,
+            "frames": [{{"transform_matrix": [{}, {}, {}{last}]}}]}}"#,
+            row(0),
+            row(1),
+            row(2)
+        )
+    };
+    let single = |scale: f64| {
+        let matrix = DMat4::from_scale(DVec3::splat(scale)) * camera().world_to_camera();
+        format!(
+            r#"{{"width": 1000, "height": 600.2, "fx": 800, "fy": 810, "cx": 500, "cy": 300, "world_to_camera": {}}}"#,
+            json(matrix.transpose().to_cols_array())
+        )
+    };
+    let exact = to_world(1.0, 15);
+    for (text, within, says) in [
+        (inria(exact), 1e-9, None),
+        (inria(to_world(1.0, 6)), 1e-5, None),
+        (inria(to_world(1.0, 4)), 2e-4, Some("made square")),
+        (inria(to_world(1.0, 2)), 2e-2, Some("made square")),
+        (inria(to_world(7.5, 15)), 1e-9, Some("scales by 7.5")),
+        (inria(to_world(0.01, 15)), 1e-9, Some("scales by 0.01")),
+        (
+            nerfstudio(to_world(3.0, 2), 1000.0, ""),
+            2e-2,
+            Some("scales by 3.0"),
+        ),
+        (
+            nerfstudio(exact, 1000.0, ", [0, 0, 0, 1.0000001]"),
+            1e-6,
+            None,
+        ),
+        (
+            nerfstudio(exact, 1000.25, ""),
+            1e-9,
+            Some("its width of 1000.25 pixels is taken for 1000"),
+        ),
+        (single(1.0), 1e-9, Some("its height of 600.2")),
+        (single(4.0), 1e-9, Some("scales by 4.0")),
+    ] {
+        let named = &load_json(&text).unwrap()[0];
+        let found = named.camera().unwrap();
+        assert!(found.eye.abs_diff_eq(camera().eye, within * 4.0), "{text}");
+        assert!(
+            found.rotation.abs_diff_eq(camera().rotation, within),
+            "{text}"
+        );
+        let square = found.rotation * found.rotation.transpose();
+        assert!(square.abs_diff_eq(glam::DMat3::IDENTITY, 1e-14), "{square}");
+        assert_eq!((found.width, found.height, found.cx), (1000, 600, 500.0));
+        let said = named.repairs().join(", ");
+        match says {
+            None => assert_eq!(said, ""),
+            Some(says) => assert!(said.contains(says), "{said}"),
+        }
+    }
+    let [x, y, z] = exact;
+    let mirrored = [x, y, z.map(|v| -v)];
+    for skew in [
+        mirrored,
+        [x, y.map(|v| 2.0 * v), z],
+        [x, x, z],
+        [[0.0; 3]; 3],
+    ] {
+        let message = draw_json(&inria(skew)).unwrap_err().to_string();
+        assert!(message.contains("not a rotation"), "{message}");
+    }
+}
+
+/// Without perspective a matrix that scales says how large the picture is.
+#[test]
+fn a_scaled_orthographic_camera_keeps_its_picture() {
+    let matrix = "[2, 0, 0, 2, 0, 2, 0, 4, 0, 0, 2, 6, 0, 0, 0, 1]";
+    let text = format!(
+        r#"{{"width": 9, "height": 7, "fx": 8, "fy": 8, "projection": "orthographic", "world_to_camera": {matrix}}}"#
+    );
+    let camera = draw_json(&text).unwrap()[0];
+    assert_eq!((camera.fx, camera.fy), (16.0, 16.0));
+    assert_eq!(camera.eye, DVec3::new(-1.0, -2.0, -3.0));
 }
 
 #[test]
@@ -242,7 +391,8 @@ fn unusable_files_are_refused_with_a_sentence() {
         ("{}".into(), "frames"),
         ("[1, 2".into(), "line 1"),
         (format!("[{}]", inria.replace("1000", "0")), "width 0"),
-        (format!("[{}]", inria.replace("1000", "10.5")), "width 10.5"),
+        (format!("[{}]", inria.replace("1000", "0.5")), "width 0.5"),
+        (format!("[{}]", inria.replace("1000", "16384.5")), "16384.5"),
         (format!("[{}]", inria.replace("800.0", "-1")), "focal"),
         (
             format!(
@@ -255,11 +405,15 @@ fn unusable_files_are_refused_with_a_sentence() {
         (format!(r#"{{"w": 5, "h": 5, {frame}}}"#), "camera_angle_x"),
         (
             format!(r#"{{"w": 5, "h": 5, "fl_x": 5, "k1": 0.1, {frame}}}"#),
-            "distortion",
+            "frame 0 (`0`) has the lens OPENCV, which bends straight lines",
         ),
         (
             format!(r#"{{"w": 5, "h": 5, "fl_x": 5, "camera_model": "OPENCV_FISHEYE", {frame}}}"#),
-            "distortion",
+            "the lens OPENCV_FISHEYE",
+        ),
+        (
+            format!(r#"{{"w": 5, "h": 5, "fl_x": 5, "camera_model": "VR180_L", {frame}}}"#),
+            "VR180_L, which has no pinhole",
         ),
         (
             r#"{"w": 5, "h": 5, "fl_x": 5, "frames": [{"transform_matrix": [[1, 0, 0, 0]]}]}"#
@@ -267,7 +421,7 @@ fn unusable_files_are_refused_with_a_sentence() {
             "4x4",
         ),
     ] {
-        let message = load_json(&text).unwrap_err().to_string();
+        let message = draw_json(&text).unwrap_err().to_string();
         assert!(
             message.contains(words) && message.contains("cameras.json"),
             "{message:?} lacks {words:?}"

@@ -1,6 +1,9 @@
 //! Reading COLMAP's models: both encodings give the same cameras, and bad ones a sentence.
 
-use rara::camera_files::load_cameras;
+use std::path::Path;
+
+use rara::Camera;
+use rara::camera_files::{NamedCamera, load_cameras};
 
 use super::cameras::{Folder, assert_same, camera};
 
@@ -63,9 +66,150 @@ fn colmap_folders_binary_and_text() {
     );
     for path in [&folder.0, &folder.0.join("sparse"), &file, &text.0] {
         let cameras = load_cameras(path).unwrap();
-        assert_eq!([&cameras[0].name, &cameras[1].name], ["a.png", "b.png"]);
-        assert_same(&cameras[0].camera, &camera());
-        assert_eq!(cameras[1].camera.fy, 800.0);
+        assert_eq!([cameras[0].name(), cameras[1].name()], ["a.png", "b.png"]);
+        assert_same(&cameras[0].camera().unwrap(), &camera());
+        assert_eq!(cameras[1].camera().unwrap().fy, 800.0);
+    }
+}
+
+/// All of the cameras, as they are drawn.
+fn draw(folder: &Path) -> rara::Result<Vec<Camera>> {
+    load_cameras(folder)?
+        .iter()
+        .map(NamedCamera::camera)
+        .collect()
+}
+
+/// The parameters of a camera of each model, after the focal lengths and the principal point.
+const LENSES: [(&str, &str); 17] = [
+    ("SIMPLE_PINHOLE", ""),
+    ("PINHOLE", ""),
+    ("SIMPLE_RADIAL", "0.1"),
+    ("RADIAL", "0.1 0"),
+    ("OPENCV", "0 0 0.001 0"),
+    ("OPENCV_FISHEYE", "0 0 0 0"),
+    ("FULL_OPENCV", "0 0 0 0 0 0 0 0.1"),
+    ("FOV", "0.9"),
+    ("SIMPLE_RADIAL_FISHEYE", "0"),
+    ("RADIAL_FISHEYE", "0 0"),
+    ("THIN_PRISM_FISHEYE", "0 0 0 0 0 0 0 0"),
+    ("RAD_TAN_THIN_PRISM_FISHEYE", "0 0 0 0 0 0 0 0 0 0 0 0"),
+    ("SIMPLE_DIVISION", "-0.3"),
+    ("DIVISION", "-0.3"),
+    ("SIMPLE_FISHEYE", ""),
+    ("FISHEYE", ""),
+    ("EUCM", "0.6 1.1"),
+];
+
+#[test]
+fn lenses_of_every_model_of_colmap() {
+    let folder = Folder::new();
+    let mut cameras = String::from("# comment\n");
+    let mut images = String::new();
+    let mut binary = (LENSES.len() as u64).to_le_bytes().to_vec();
+    for (number, (name, rest)) in LENSES.iter().enumerate() {
+        let focal = match name.contains("SIMPLE") || name.starts_with("RADIAL") {
+            true => "8",
+            false => "8 8",
+        };
+        cameras += &format!("{number} {name} 9.0 7 {focal} 4 3 {rest}\n");
+        images += &format!("1 1 0 0 0 0 0 0 {number} {number:02}\n\n");
+        binary.extend((number as u32).to_le_bytes());
+        binary.extend((number as i32).to_le_bytes());
+        binary.extend([9_u64, 7].map(u64::to_le_bytes).concat());
+        let parameters = format!("{focal} 4 3 {rest}");
+        let parameters = parameters
+            .split_whitespace()
+            .map(|p| p.parse::<f64>().unwrap());
+        parameters.for_each(|p| binary.extend(p.to_le_bytes()));
+    }
+    folder.file("cameras.txt", &cameras);
+    folder.file("images.txt", &images);
+    let named = load_cameras(&folder.0).unwrap();
+    for (number, (one, (name, _))) in named.iter().zip(LENSES).enumerate() {
+        let is_pinhole = number < 2;
+        assert_eq!(one.distortion(), (!is_pinhole).then_some(name));
+        assert_eq!(one.undistorted().unwrap(), named[1].camera().unwrap());
+        let Err(error) = one.camera() else {
+            assert!(is_pinhole, "{name}");
+            continue;
+        };
+        let camera = format!("the picture `{number:02}` (camera {number} of cameras.txt)");
+        for says in [&camera, name, "images.txt", "--undistort"] {
+            assert!(error.to_string().contains(says), "{error}");
+        }
+    }
+    folder.file("cameras.bin", &binary);
+    let of_binary = load_cameras(&folder.0).unwrap();
+    for (a, b) in named.iter().zip(&of_binary) {
+        assert_eq!(a.undistorted().unwrap(), b.undistorted().unwrap());
+        assert_eq!(a.distortion(), b.distortion());
+    }
+    let text = |lens: &str| {
+        folder.file("cameras.txt", lens);
+        std::fs::remove_file(folder.0.join("cameras.bin")).unwrap_or_default();
+        folder.file("images.txt", "1 2 0 0 0 0 0 0 1 a\n\n");
+        load_cameras(&folder.0).unwrap().remove(0)
+    };
+    // No distortion is none, whatever the model could say.
+    for lens in [
+        "OPENCV 9 7 8 8 4 3 0 0 -0 0",
+        "FOV 9 7 8 8 4 3 0",
+        "DIVISION 9 7 8 8 4 3 0",
+    ] {
+        assert_eq!(text(&format!("1 {lens}")).distortion(), None, "{lens}");
+    }
+    let rounded = text("1 PINHOLE 9.5 7 8 8 4 3");
+    assert_eq!(rounded.camera().unwrap().width, 10);
+    let said = rounded.repairs().join("; ");
+    assert!(
+        said.contains("9.5 pixels") && said.contains("quaternion is 2"),
+        "{said}"
+    );
+}
+
+/// Models that nobody knows do not keep others of the file from being drawn.
+#[test]
+fn cameras_beside_one_of_an_unknown_model() {
+    let folder = Folder::new();
+    folder.file(
+        "cameras.txt",
+        "1 PINHOLE 9 7 8 8 4 3\n2 SPHERICAL 9 7 9 7\n3 PINHOLE 9 7 8 8 4 3\n",
+    );
+    let images = "1 1 0 0 0 0 0 0 1 a\n\n2 1 0 0 0 0 0 0 2 b\n\n3 1 0 0 0 0 0 0 3 c\n\n";
+    folder.file("images.txt", images);
+    let named = load_cameras(&folder.0).unwrap();
+    assert!(named[0].camera().is_ok() && named[2].camera().is_ok());
+    for outcome in [named[1].camera(), named[1].undistorted()] {
+        let message = outcome.unwrap_err().to_string();
+        assert!(
+            message
+                .contains("`b` was taken with camera 2 of the model SPHERICAL, which is not known")
+        );
+    }
+    // In binary no one knows where the next one begins.
+    let (mut cameras, pinhole) = (3_u64.to_le_bytes().to_vec(), [8.0_f64, 8.0, 4.0, 3.0]);
+    for (id, model, parameters) in [
+        (1_u32, 1_i32, &pinhole[..]),
+        (2, 99, &[9.0, 7.0]),
+        (3, 1, &pinhole),
+    ] {
+        cameras.extend(id.to_le_bytes());
+        cameras.extend(model.to_le_bytes());
+        cameras.extend([9_u64, 7].map(u64::to_le_bytes).concat());
+        parameters
+            .iter()
+            .for_each(|p| cameras.extend(p.to_le_bytes()));
+    }
+    folder.file("cameras.bin", cameras);
+    let named = load_cameras(&folder.0).unwrap();
+    assert!(named[0].camera().is_ok());
+    for (one, says) in [
+        (&named[1], "camera 2 of the model 99, which is not known"),
+        (&named[2], "stands behind camera 2 of the unknown model 99"),
+    ] {
+        let message = one.undistorted().unwrap_err().to_string();
+        assert!(message.contains(says), "{message}");
     }
 }
 
@@ -75,7 +219,7 @@ fn unusable_colmap_models_are_refused() {
         let folder = Folder::new();
         folder.file("cameras.bin", cameras);
         folder.file("images.bin", images);
-        load_cameras(&folder.0).unwrap_err().to_string()
+        draw(&folder.0).unwrap_err().to_string()
     };
     let (cameras, images) = colmap_binary();
     let with = |at: usize, bytes: &[u8]| {
@@ -84,9 +228,12 @@ fn unusable_colmap_models_are_refused() {
         cameras
     };
     assert!(refused(&with(0, &u64::MAX.to_le_bytes()), &images).contains("promises"));
-    assert!(refused(&with(12, &99_i32.to_le_bytes()), &images).contains("unknown model 99"));
+    assert!(
+        refused(&with(12, &99_i32.to_le_bytes()), &images)
+            .contains("the model 99, which is not known")
+    );
     let last = cameras.len() - 8;
-    assert!(refused(&with(last, &0.1_f64.to_le_bytes()), &images).contains("distortion"));
+    assert!(refused(&with(last, &0.1_f64.to_le_bytes()), &images).contains("SIMPLE_RADIAL"));
     assert!(refused(&with(8, &77_u32.to_le_bytes()), &images).contains("camera 3"));
     assert!(
         refused(

@@ -4,7 +4,7 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use rara::camera_files::cameras_from_json;
+use rara::camera_files::{NamedCamera, cameras_from_json};
 use rara::{Camera, Gaussians, Plane, Surface};
 
 /// The system's allocator, which ends the process when a run needs more than its share.
@@ -93,11 +93,19 @@ pub fn assert_cameras(json: &[u8]) {
     }) {
         Ok(cameras) => {
             assert!(!cameras.is_empty());
-            cameras
-                .iter()
-                .for_each(|named| assert_camera(&named.camera));
+            cameras.iter().for_each(assert_named);
         }
         Err(error) => assert_readable(&error),
+    }
+}
+
+/// Asserts that a camera of a file is one, or that its error is for people.
+pub fn assert_named(named: &NamedCamera) {
+    for outcome in [named.camera(), named.undistorted()] {
+        match outcome {
+            Ok(camera) => assert_camera(&camera),
+            Err(error) => assert_readable(&error),
+        }
     }
 }
 

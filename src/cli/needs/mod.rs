@@ -41,6 +41,7 @@ const NEEDS: &[(&str, Need)] = &[
     // The camera.
     ("up", Other("views", "0")),
     ("cameras", Flag(&["scene_files"])),
+    ("undistort", Flag(&["cameras", "camera", "view", "path"])),
     ("size", Other("views", "0")),
     ("frames", Flag(&["path"])),
     // Sections.

@@ -15,8 +15,8 @@ pub(super) enum DroppedFile {
     /// A scene, which is yet to be read.
     Scene,
     Clip(Vec<NamedClip>),
-    /// One camera at least.
-    Cameras(Vec<Camera>),
+    /// One camera at least, and why others of the file are none.
+    Cameras(Vec<Camera>, Option<Error>),
 }
 
 impl DroppedFile {
@@ -46,8 +46,17 @@ impl DroppedFile {
                 Self::Clip(clips)
             }
             JsonKind::Cameras => {
-                let cameras = load_cameras(path)?;
-                Self::Cameras(cameras.into_iter().map(|named| named.camera).collect())
+                let (mut cameras, mut error) = (Vec::new(), None);
+                for named in load_cameras(path)? {
+                    match named.camera() {
+                        Ok(camera) => cameras.push(camera),
+                        Err(first) => error = error.or(Some(first)),
+                    }
+                }
+                match error {
+                    Some(error) if cameras.is_empty() => return Err(error.into()),
+                    error => Self::Cameras(cameras, error),
+                }
             }
         })
     }

@@ -151,7 +151,7 @@ impl Viewer {
             match dropped {
                 DroppedFile::Scene => {}
                 DroppedFile::Clip(clips) => self.take_up(clips),
-                DroppedFile::Cameras(cameras) => {
+                DroppedFile::Cameras(cameras, error) => {
                     let count = cameras.len();
                     // What is up is what is up in the camera's own picture.
                     let up = |camera: rara::Camera| (camera, -camera.rotation.row(1));
@@ -161,6 +161,9 @@ impl Viewer {
                     if count > 1 {
                         self.overlay
                             .tell(format!("camera 1 of {count}; N takes the next"));
+                    }
+                    if let Some(error) = error {
+                        self.warn(&error.into());
                     }
                 }
             }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use glam::DVec3;
-use rara::camera_files::load_cameras;
+use rara::camera_files::{NamedCamera, load_cameras};
 use rara::scene::{Bounds, Kind, generate};
 use rara::{Camera, Clip, ClipOp, Error, Gaussians, Plane, Result};
 
@@ -44,13 +44,14 @@ impl World {
         if gaussians.is_empty() {
             return Err(Error::format(file, "there is no Gaussian in it"));
         }
-        let cameras = cameras.map(load_cameras).transpose()?;
+        let cameras = cameras.map(load_cameras).transpose()?.unwrap_or_default();
+        let cameras = cameras.iter().map(NamedCamera::camera);
         Ok(Self {
             name,
             bounds: Bounds::of(&gaussians),
             scene: gaussians,
             file: Some(file.into()),
-            cameras: cameras.into_iter().flatten().map(|c| c.camera).collect(),
+            cameras: cameras.collect::<Result<_>>()?,
         })
     }
 

@@ -7,15 +7,26 @@ use std::path::{Path, PathBuf};
 
 use glam::{DMat4, DQuat, DVec3};
 
-use super::{ColmapFormat, NamedCamera, Parts, Pose, colmap_binary, colmap_text};
+use super::{
+    ColmapFormat, Entry, NamedCamera, Outcome, Parts, Pose, colmap_binary, colmap_text, named,
+};
 use rara_base::error::{Error, Result, shortened};
+
+/// The lines or records of `cameras`.
+pub(super) struct Lenses {
+    pub(super) lenses: Vec<Lens>,
+    /// Why those behind them could not be read, if there are any.
+    pub(super) rest: Option<String>,
+}
 
 /// A line or record of `cameras`.
 pub(super) struct Lens {
     pub(super) id: u32,
-    pub(super) model: &'static Model,
-    pub(super) width: u64,
-    pub(super) height: u64,
+    /// Or the name of one that we do not know.
+    pub(super) model: std::result::Result<&'static Model, String>,
+    pub(super) width: f64,
+    pub(super) height: f64,
+    /// Those of a model that we know.
     pub(super) parameters: Vec<f64>,
 }
 
@@ -48,7 +59,7 @@ const fn model(name: &'static str, parameters: usize, shared_focal: bool, straig
 }
 
 /// By COLMAP's number of the model.
-pub(super) const MODELS: [Model; 12] = [
+pub(super) const MODELS: [Model; 17] = [
     model("SIMPLE_PINHOLE", 3, true, true),
     model("PINHOLE", 4, false, true),
     model("SIMPLE_RADIAL", 4, true, true),
@@ -56,11 +67,16 @@ pub(super) const MODELS: [Model; 12] = [
     model("OPENCV", 8, false, true),
     model("OPENCV_FISHEYE", 8, false, false),
     model("FULL_OPENCV", 12, false, true),
-    model("FOV", 5, false, false),
+    model("FOV", 5, false, true),
     model("SIMPLE_RADIAL_FISHEYE", 4, true, false),
     model("RADIAL_FISHEYE", 5, true, false),
     model("THIN_PRISM_FISHEYE", 12, false, false),
     model("RAD_TAN_THIN_PRISM_FISHEYE", 16, false, false),
+    model("SIMPLE_DIVISION", 4, true, true),
+    model("DIVISION", 5, false, true),
+    model("SIMPLE_FISHEYE", 3, true, false),
+    model("FISHEYE", 4, false, false),
+    model("EUCM", 6, false, false),
 ];
 
 pub(super) fn load(folder: &Path) -> Result<Vec<NamedCamera>> {
@@ -100,32 +116,36 @@ pub(super) fn parse(
 
 /// Each picture with its camera, by name.
 fn joined(
-    lenses: Vec<Lens>,
+    lenses: Lenses,
     lenses_at: &Path,
     mut images: Vec<ColmapImage>,
     images_at: &Path,
 ) -> Result<Vec<NamedCamera>> {
+    let Lenses { lenses, rest } = lenses;
     let lenses: HashMap<u32, Lens> = lenses.into_iter().map(|lens| (lens.id, lens)).collect();
+    let file = lenses_at.file_name().unwrap_or_default();
     images.sort_by(|a, b| a.name.cmp(&b.name));
-    let named = |image: ColmapImage| {
-        let lens = lenses.get(&image.lens).ok_or_else(|| {
-            let message = format!(
-                "the picture `{}` was taken with camera {}, which {} does not list; export the model again",
-                shortened(&image.name),
+    let entry = |image: ColmapImage| {
+        let picture = format!("the picture `{}`", shortened(&image.name));
+        let what = format!("{picture} (camera {} of {})", image.lens, file.display());
+        let lens = lenses.get(&image.lens);
+        let pinhole = match (lens, &rest) {
+            (Some(lens), _) => lens.camera(&image, &picture),
+            (None, Some(rest)) => Err(format!("{what}: {rest}")),
+            (None, None) => Err(format!(
+                "{picture} was taken with camera {}, which {} does not list; export the model again",
                 image.lens,
                 lenses_at.display()
-            );
-            Error::format(images_at, message)
-        })?;
-        let camera = parts(lens, &image)
-            .and_then(|parts| parts.camera(&format!("the picture `{}`", shortened(&image.name))));
-        let camera = camera.map_err(|message| Error::format(images_at, message))?;
-        Ok(NamedCamera {
+            )),
+        };
+        Entry {
             name: image.name,
-            camera,
-        })
+            lens: lens.and_then(Lens::distortion).map(str::to_owned),
+            what,
+            pinhole,
+        }
     };
-    images.into_iter().map(named).collect()
+    named(images.into_iter().map(entry).collect(), images_at)
 }
 
 /// The folder itself or the usual place below a data set's root.
@@ -159,9 +179,9 @@ fn file(folder: &Path, name: &str) -> PathBuf {
     }
 }
 
-type Read<T> = fn(File, &Path) -> Result<Vec<T>>;
+type Read<T> = fn(File, &Path) -> Result<T>;
 
-fn read<T>(path: &Path, binary: Read<T>, text: Read<T>) -> Result<Vec<T>> {
+fn read<T>(path: &Path, binary: Read<T>, text: Read<T>) -> Result<T> {
     let file = File::open(path).map_err(Error::io(path))?;
     if path.extension().is_some_and(|e| e == "bin") {
         binary(file, path)
@@ -170,42 +190,52 @@ fn read<T>(path: &Path, binary: Read<T>, text: Read<T>) -> Result<Vec<T>> {
     }
 }
 
-fn parts(lens: &Lens, image: &ColmapImage) -> std::result::Result<Parts, String> {
-    let Model {
-        name,
-        shared_focal,
-        straight,
-        ..
-    } = *lens.model;
-    let p = &lens.parameters;
-    let (focal, rest) = if shared_focal {
-        ((p[0], p[0]), &p[1..])
-    } else {
-        ((p[0], p[1]), &p[2..])
-    };
-    let (centre, distortion) = ((rest[0], rest[1]), &rest[2..]);
-    if !straight || distortion.iter().any(|&k| k != 0.0) {
-        return Err(format!(
-            "camera {} is a {name} with lens distortion, which a splat renderer has not; run colmap \
-             image_undistorter and give its sparse folder",
-            lens.id
-        ));
+impl Lens {
+    /// The name of the model, if it bends straight lines.
+    fn distortion(&self) -> Option<&'static str> {
+        let model = self.model.as_ref().ok()?;
+        let focal_and_centre = if model.shared_focal { 3 } else { 4 };
+        let mut distortion = self.parameters[focal_and_centre..].iter();
+        let is_straight = model.straight && distortion.all(|&k| k == 0.0);
+        (!is_straight).then_some(model.name)
     }
-    let length = image.rotation.length();
-    if !(length.is_finite() && length > 1e-6) {
-        return Err(format!(
-            "the picture `{}` has no valid rotation; export the model again",
-            shortened(&image.name)
-        ));
+
+    /// The camera of a picture, whatever its lens does to straight lines.
+    fn camera(&self, image: &ColmapImage, picture: &str) -> Outcome {
+        let model = self.model.as_ref().map_err(|name| {
+            format!(
+                "{picture} was taken with camera {} of the model {}, which is not known; undistort the pictures where the model is \
+                 from, and give their cameras",
+                self.id,
+                shortened(name)
+            )
+        })?;
+        let p = &self.parameters;
+        let (focal, centre) = match model.shared_focal {
+            true => ((p[0], p[0]), &p[1..]),
+            false => ((p[0], p[1]), &p[2..]),
+        };
+        let length = image.rotation.length();
+        if !(length.is_finite() && length > 1e-6) {
+            return Err(format!(
+                "{picture} has no valid rotation; export the model again"
+            ));
+        }
+        let parts = Parts {
+            width: self.width,
+            height: self.height,
+            focal,
+            centre: (Some(centre[0]), Some(centre[1])),
+            pose: Pose::WorldToCamera(DMat4::from_rotation_translation(
+                image.rotation / length,
+                image.translation,
+            )),
+        };
+        let mut camera = parts.camera(picture)?;
+        if (length - 1.0).abs() > 1e-3 {
+            let repair = format!("its quaternion is {length:.6} long and is made a rotation");
+            camera.repairs.push(repair);
+        }
+        Ok(camera)
     }
-    Ok(Parts {
-        width: lens.width as f64,
-        height: lens.height as f64,
-        focal,
-        centre: (Some(centre.0), Some(centre.1)),
-        pose: Pose::WorldToCamera(DMat4::from_rotation_translation(
-            image.rotation / length,
-            image.translation,
-        )),
-    })
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use glam::{DQuat, DVec3};
 
-use super::colmap::{ColmapImage, Lens, MODELS};
+use super::colmap::{ColmapImage, Lens, Lenses, MODELS};
 use rara_base::counted::counted;
 use rara_base::error::{Error, Result};
 
@@ -21,35 +21,40 @@ struct Records<'a, R> {
     left: u64,
 }
 
-pub(super) fn lenses<R: Read + Seek>(source: R, path: &Path) -> Result<Vec<Lens>> {
+/// The cameras up to the first whose model we do not know: how long that is, no one says.
+pub(super) fn lenses<R: Read + Seek>(source: R, path: &Path) -> Result<Lenses> {
     let mut records = Records::new(source, path)?;
     let count = records.count("cameras", 24 + 3 * 8)?;
     let mut lenses = Vec::with_capacity(count);
     for _ in 0..count {
         let id = u32::from_le_bytes(records.bytes()?);
         let number = i32::from_le_bytes(records.bytes()?);
+        let width = u64::from_le_bytes(records.bytes()?) as f64;
+        let height = u64::from_le_bytes(records.bytes()?) as f64;
         let model = usize::try_from(number)
             .ok()
             .and_then(|number| MODELS.get(number));
-        let model = model.ok_or_else(|| {
-            records.error(&format!(
-                "camera {id} has the unknown model {number}; undistort the pictures with COLMAP"
-            ))
-        })?;
-        let width = u64::from_le_bytes(records.bytes()?);
-        let height = u64::from_le_bytes(records.bytes()?);
-        let parameters = (0..model.parameters)
-            .map(|_| records.number())
-            .collect::<Result<_>>()?;
+        let parameters = model.map_or(0, |model| model.parameters);
+        let parameters = (0..parameters).map(|_| records.number());
         lenses.push(Lens {
             id,
-            model,
+            model: model.ok_or_else(|| number.to_string()),
             width,
             height,
-            parameters,
+            parameters: parameters.collect::<Result<_>>()?,
         });
+        if model.is_none() {
+            let rest = format!(
+                "it stands behind camera {id} of the unknown model {number}, whose length is not known either; write the model as \
+                 text (colmap model_converter)"
+            );
+            return Ok(Lenses {
+                lenses,
+                rest: Some(rest),
+            });
+        }
     }
-    Ok(lenses)
+    Ok(Lenses { lenses, rest: None })
 }
 
 pub(super) fn images<R: Read + Seek>(source: R, path: &Path) -> Result<Vec<ColmapImage>> {

@@ -6,7 +6,7 @@ use std::str::SplitAsciiWhitespace;
 
 use glam::{DQuat, DVec3};
 
-use super::colmap::{ColmapImage, Lens, MODELS};
+use super::colmap::{ColmapImage, Lens, Lenses, MODELS};
 use rara_base::error::{Error, Result};
 
 /// The line of a picture's points has some 30 bytes for each, and no picture has so many.
@@ -19,31 +19,31 @@ struct Lines<'a, R> {
     line: Vec<u8>,
 }
 
-pub(super) fn lenses<R: Read>(source: R, path: &Path) -> Result<Vec<Lens>> {
+pub(super) fn lenses<R: Read>(source: R, path: &Path) -> Result<Lenses> {
     let mut lines = Lines::new(source, path);
     let mut lenses = Vec::new();
     while lines.next_data()? {
         let lens = lines.parse(|words| {
             let id = word(words)?;
             let name = words.next()?;
-            let model = MODELS.iter().find(|model| model.name == name)?;
+            let model = MODELS.iter().find(|model| model.name == name);
             let (width, height) = (word(words)?, word(words)?);
-            let parameters: Vec<f64> = (0..model.parameters)
-                .map(|_| word(words))
-                .collect::<Option<_>>()?;
+            let parameters = (0..model.map_or(0, |model| model.parameters)).map(|_| word(words));
             Some(Lens {
                 id,
-                model,
                 width,
                 height,
-                parameters,
+                parameters: parameters.collect::<Option<_>>()?,
+                model: model.ok_or_else(|| name.to_owned()),
             })
         });
         lenses.push(lens.ok_or_else(|| {
-            lines.error("this is not `CAMERA_ID MODEL WIDTH HEIGHT PARAMETERS` with a known model; export the model again")
+            lines.error(
+                "this is not `CAMERA_ID MODEL WIDTH HEIGHT PARAMETERS`; export the model again",
+            )
         })?);
     }
-    Ok(lenses)
+    Ok(Lenses { lenses, rest: None })
 }
 
 pub(super) fn images<R: Read>(source: R, path: &Path) -> Result<Vec<ColmapImage>> {

@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec3};
 use serde::Deserialize;
 
-use super::{NamedCamera, Parts, Pose};
+use super::{Entry, Parts, Pose};
 use rara_base::error::shortened;
 use rara_base::json;
 
@@ -26,7 +26,7 @@ struct CameraRecord {
 
 type DVec3Json = [f64; 3];
 
-pub(super) fn parse(json: &[u8]) -> Result<Vec<NamedCamera>, String> {
+pub(super) fn parse(json: &[u8]) -> Result<Vec<Entry>, String> {
     let entries: Vec<CameraRecord> = json::parse(json)?;
     let named = |(number, entry): (usize, CameraRecord)| {
         let name = entry.img_name.unwrap_or_else(|| match &entry.id {
@@ -44,8 +44,14 @@ pub(super) fn parse(json: &[u8]) -> Result<Vec<NamedCamera>, String> {
                 eye: entry.position.into(),
             },
         };
-        let camera = parts.camera(&format!("camera {number} (`{}`)", shortened(&name)))?;
-        Ok(NamedCamera { name, camera })
+        let what = format!("camera {number} (`{}`)", shortened(&name));
+        let pinhole = parts.camera(&what);
+        Entry {
+            name,
+            what,
+            lens: None,
+            pinhole,
+        }
     };
-    entries.into_iter().enumerate().map(named).collect()
+    Ok(entries.into_iter().enumerate().map(named).collect())
 }

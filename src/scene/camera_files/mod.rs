@@ -5,25 +5,106 @@ mod colmap_binary;
 mod colmap_text;
 mod inria;
 mod nerfstudio;
+mod rigid;
 mod single;
 
 pub use single::SavedCamera;
 
 use std::path::Path;
+use std::sync::Arc;
 
 use glam::{DMat3, DMat4, DVec3};
 
 use crate::camera::Camera;
-use rara_base::error::{Error, Result};
+use rara_base::error::{Error, Result, shortened};
 use rara_base::json;
+use rigid::Rigid;
 
-/// A camera and what its file calls it.
+/// A camera of a file, and what the file calls it.
+///
+/// A file is read whatever its cameras are: what cannot be drawn is an error of [`camera`](Self::camera), where it is asked for.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NamedCamera {
+    file: Arc<Path>,
+    entry: Entry,
+}
+
+/// What a format reads of a camera.
+#[derive(Debug, Clone, PartialEq)]
+struct Entry {
+    name: String,
+    /// What messages call it.
+    what: String,
+    /// The model of a lens that bends straight lines.
+    lens: Option<String>,
+    /// The camera but for such a lens, or what is wrong with it.
+    pinhole: Outcome,
+}
+
+type Outcome = std::result::Result<RepairedCamera, String>;
+
+/// A camera, and what had to be made of numbers that are none of a camera.
+#[derive(Debug, Clone, PartialEq)]
+struct RepairedCamera {
+    camera: Camera,
+    repairs: Vec<String>,
+}
+
+impl NamedCamera {
     /// The picture's name in the file, or the camera's number there.
-    pub name: String,
+    pub fn name(&self) -> &str {
+        &self.entry.name
+    }
+
     /// The camera.
-    pub camera: Camera,
+    ///
+    /// # Errors
+    /// [`Error::Format`], which names it, if the file has no camera's numbers for it, or if it has a lens that bends straight lines:
+    /// splats are drawn through pinholes. [`undistorted`](Self::undistorted) gives the pinhole of such a camera.
+    pub fn camera(&self) -> Result<Camera> {
+        let pinhole = self.undistorted()?;
+        let Some(lens) = &self.entry.lens else {
+            return Ok(pinhole);
+        };
+        let message = format!(
+            "{} has the lens {}, which bends straight lines, and splats are drawn through a pinhole: --undistort draws that of the same \
+             focal lengths, or give the cameras of undistorted pictures (colmap image_undistorter makes them)",
+            self.entry.what,
+            shortened(lens)
+        );
+        Err(Error::format(&*self.file, message))
+    }
+
+    /// The camera as a pinhole: the same focal lengths and principal point, without the distortion of the lens.
+    ///
+    /// # Errors
+    /// [`Error::Format`], which names it, if the file has no camera's numbers for it, or those of a model that is not known.
+    pub fn undistorted(&self) -> Result<Camera> {
+        match &self.entry.pinhole {
+            Ok(repaired) => Ok(repaired.camera),
+            Err(message) => Err(Error::format(&*self.file, message)),
+        }
+    }
+
+    /// The model of its lens, if that bends straight lines.
+    pub fn distortion(&self) -> Option<&str> {
+        self.entry.lens.as_deref()
+    }
+
+    /// What had to be made of numbers that are none of a camera: rotations that are rounded, matrices that scale, and pictures of
+    /// fractions of a pixel. Each is a clause that says what was done.
+    pub fn repairs(&self) -> &[String] {
+        let repaired = self.entry.pinhole.as_ref();
+        repaired.map_or(&[], |repaired| &repaired.repairs)
+    }
+
+    /// The same where `place` puts its camera.
+    pub fn placed(mut self, place: impl FnOnce(Camera) -> Camera) -> Self {
+        if let Ok(repaired) = &mut self.entry.pinhole {
+            repaired.camera = place(repaired.camera);
+        }
+        self
+    }
 }
 
 /// How the files of a COLMAP model are written.
@@ -40,13 +121,14 @@ pub enum ColmapFormat {
 /// COLMAP's cameras are sorted by picture name. A file with a single camera (see [`load_camera`]) gives that one, and a list
 /// of such cameras, each perhaps with a `"name"`, all of them.
 ///
-/// World coordinates are taken as the file has them. Cameras with lens distortion are an error.
+/// World coordinates are taken as the file has them. Only the cameras that are asked for have to be usable, see
+/// [`NamedCamera::camera`].
 ///
 /// # Errors
-/// [`Error::Io`] if something can't be read, [`Error::Format`] if it is none of these or has unusable cameras in it.
+/// [`Error::Io`] if something can't be read, [`Error::Format`] if it is none of these.
 pub fn load_cameras(path: &Path) -> Result<Vec<NamedCamera>> {
-    let cameras = if path.is_dir() {
-        colmap::load(path)?
+    if path.is_dir() {
+        colmap::load(path)
     } else if let (Some("bin" | "txt"), Some(folder)) =
         (path.extension().and_then(|e| e.to_str()), path.parent())
     {
@@ -55,31 +137,28 @@ pub fn load_cameras(path: &Path) -> Result<Vec<NamedCamera>> {
             Path::new(".")
         } else {
             folder
-        })?
+        })
     } else {
-        return cameras_from_json(&json::read(path, "cameras")?, path);
-    };
-    not_empty(cameras, path)
+        cameras_from_json(&json::read(path, "cameras")?, path)
+    }
 }
 
 /// Like [`load_cameras`] for the text of a `cameras.json`, a `transforms.json` or a single camera in memory; `name`
 /// stands for it in messages.
 ///
 /// # Errors
-/// [`Error::Format`] if it is none of these or has unusable cameras in it.
+/// [`Error::Format`] if it is none of these.
 pub fn cameras_from_json(json: &[u8], name: &Path) -> Result<Vec<NamedCamera>> {
     let json = json::bare(json);
     let cameras = match json.first() {
         Some(b'[') if single::is_list(json) => single::parse_list(json),
         Some(b'[') => inria::parse(json),
         Some(b'{') if nerfstudio::is_path(json) => nerfstudio::parse_path(json),
-        Some(b'{') => nerfstudio::parse(json).or_else(|error| match single::parse(json) {
-            Ok(camera) => Ok(vec![NamedCamera { name: "0".into(), camera }]),
-            Err(_) => Err(error),
-        }),
+        Some(b'{') if single::is_one(json) => single::parse(json).map(|one| vec![one]),
+        Some(b'{') => nerfstudio::parse(json),
         _ => Err("this is neither a cameras.json, a transforms.json nor a COLMAP folder; give one of these".into()),
     };
-    not_empty(
+    named(
         cameras.map_err(|message| Error::format(name, message))?,
         name,
     )
@@ -88,24 +167,30 @@ pub fn cameras_from_json(json: &[u8], name: &Path) -> Result<Vec<NamedCamera>> {
 /// Like [`load_cameras`] for the two files of a COLMAP model in memory; `name` stands for its folder in messages.
 ///
 /// # Errors
-/// [`Error::Format`] if they are no model or have unusable cameras in them.
+/// [`Error::Format`] if they are no model.
 pub fn cameras_from_colmap(
     format: ColmapFormat,
     cameras: &[u8],
     images: &[u8],
     name: &Path,
 ) -> Result<Vec<NamedCamera>> {
-    not_empty(colmap::parse(format, cameras, images, name)?, name)
+    colmap::parse(format, cameras, images, name)
 }
 
-fn not_empty(cameras: Vec<NamedCamera>, path: &Path) -> Result<Vec<NamedCamera>> {
-    if cameras.is_empty() {
+/// The cameras of a file, of which there has to be one.
+fn named(entries: Vec<Entry>, file: &Path) -> Result<Vec<NamedCamera>> {
+    if entries.is_empty() {
         return Err(Error::format(
-            path,
+            file,
             "there is no camera in it; export the cameras again",
         ));
     }
-    Ok(cameras)
+    let file: Arc<Path> = file.into();
+    let named = |entry: Entry| NamedCamera {
+        file: file.clone(),
+        entry,
+    };
+    Ok(entries.into_iter().map(named).collect())
 }
 
 /// Loads a single camera: JSON `{"width", "height", "fx", "fy", "cx", "cy", "world_to_camera": [16 numbers,
@@ -124,7 +209,9 @@ pub fn load_camera(path: &Path) -> Result<Camera> {
 /// # Errors
 /// [`Error::Format`] if it has no usable camera.
 pub fn camera_from_json(json: &[u8], name: &Path) -> Result<Camera> {
-    single::parse(json::bare(json)).map_err(|message| Error::format(name, message))
+    let one = single::parse(json::bare(json)).and_then(|one| one.pinhole);
+    one.map(|one| one.camera)
+        .map_err(|message| Error::format(name, message))
 }
 
 /// The parts that each format is reduced to. `pose` takes camera coordinates (right, down, forward) to the world.
@@ -144,31 +231,42 @@ enum Pose {
 
 impl Parts {
     /// The camera, or what is wrong with it; `what` names it.
-    fn camera(self, what: &str) -> std::result::Result<Camera, String> {
-        let side = |side: f64, name: &str| {
-            let whole = side.fract() == 0.0 && side >= 1.0 && side <= f64::from(Camera::MAX_SIZE);
-            let error = || {
-                format!(
-                    "{what} has the {name} {side}; it must be a whole number from 1 to {}",
+    fn camera(self, what: &str) -> Outcome {
+        let mut repairs = Vec::new();
+        let mut side = |side: f64, name: &str| {
+            let whole = side.round();
+            if !(side >= 1.0 && whole <= f64::from(Camera::MAX_SIZE)) {
+                return Err(format!(
+                    "{what} has the {name} {side}; it must be from 1 to {} pixels",
                     Camera::MAX_SIZE
-                )
-            };
-            whole.then_some(side as u32).ok_or_else(error)
+                ));
+            }
+            if whole != side {
+                repairs.push(format!("its {name} of {side} pixels is taken for {whole}"));
+            }
+            Ok(whole as u32)
         };
         let size = (side(self.width, "width")?, side(self.height, "height")?);
         let world_to_camera = match self.pose {
-            Pose::WorldToCamera(matrix) => matrix,
+            Pose::WorldToCamera(matrix) => {
+                let rigid = Rigid::new(DMat3::from_mat4(matrix));
+                repairs.extend(rigid.repair);
+                DMat4::from_mat3_translation(rigid.axes, matrix.w_axis.truncate() / rigid.scale)
+            }
             Pose::CameraToWorld { axes, eye } => {
-                let rotation = axes.transpose();
+                let rigid = Rigid::new(axes);
+                repairs.extend(rigid.repair);
+                let rotation = rigid.axes.transpose();
                 DMat4::from_mat3_translation(rotation, -(rotation * eye))
             }
         };
         let centre = (
-            self.centre.0.unwrap_or(self.width / 2.0),
-            self.centre.1.unwrap_or(self.height / 2.0),
+            self.centre.0.unwrap_or(f64::from(size.0) / 2.0),
+            self.centre.1.unwrap_or(f64::from(size.1) / 2.0),
         );
         let intrinsics = (self.focal.0, self.focal.1, centre.0, centre.1);
-        Camera::from_world_to_camera(world_to_camera, intrinsics, size)
-            .map_err(|error| format!("{what}: {error}"))
+        let camera = Camera::from_world_to_camera(world_to_camera, intrinsics, size)
+            .map_err(|error| format!("{what}: {error}"))?;
+        Ok(RepairedCamera { camera, repairs })
     }
 }

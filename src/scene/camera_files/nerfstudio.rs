@@ -1,10 +1,11 @@
 //! `transforms.json` of nerfstudio and instant-ngp, and `camera_path.json` of nerfstudio's viewer: OpenGL cameras, intrinsics
 //! shared or frame by frame.
 
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DMat4, DVec3, DVec4};
 use serde::Deserialize;
 
-use super::{NamedCamera, Parts, Pose};
+use super::rigid::affine;
+use super::{Entry, Outcome, Parts, Pose};
 use rara_base::error::shortened;
 use rara_base::json;
 
@@ -45,8 +46,12 @@ struct Intrinsics {
     k2: Option<f64>,
     k3: Option<f64>,
     k4: Option<f64>,
+    k5: Option<f64>,
+    k6: Option<f64>,
     p1: Option<f64>,
     p2: Option<f64>,
+    distortion_params: Option<Vec<f64>>,
+    is_fisheye: Option<bool>,
 }
 
 impl Intrinsics {
@@ -66,26 +71,64 @@ impl Intrinsics {
             k2: self.k2.or(shared.k2),
             k3: self.k3.or(shared.k3),
             k4: self.k4.or(shared.k4),
+            k5: self.k5.or(shared.k5),
+            k6: self.k6.or(shared.k6),
             p1: self.p1.or(shared.p1),
             p2: self.p2.or(shared.p2),
+            distortion_params: self.distortion_params.or(shared.distortion_params),
+            is_fisheye: self.is_fisheye.or(shared.is_fisheye),
         }
     }
 
-    fn check_undistorted(&self, what: &str) -> Result<(), String> {
-        let model = self.camera_model.as_deref().unwrap_or("PINHOLE");
-        let pinhole = matches!(
+    /// The model of a lens that bends straight lines.
+    fn distortion(&self) -> Option<String> {
+        let is_fisheye = self.is_fisheye == Some(true);
+        let model = self.camera_model.as_deref().unwrap_or(match is_fisheye {
+            true => "OPENCV_FISHEYE",
+            false => "OPENCV",
+        });
+        let is_straight = matches!(
             model,
             "PINHOLE" | "SIMPLE_PINHOLE" | "SIMPLE_RADIAL" | "RADIAL" | "OPENCV" | "FULL_OPENCV"
         );
-        let coefficients = [self.k1, self.k2, self.k3, self.k4, self.p1, self.p2];
-        if pinhole && coefficients.iter().flatten().all(|&k| k == 0.0) {
-            return Ok(());
+        let radial = [self.k1, self.k2, self.k3, self.k4, self.k5, self.k6];
+        let coefficients = radial.iter().chain([&self.p1, &self.p2]).flatten();
+        let mut coefficients = coefficients.chain(self.distortion_params.iter().flatten());
+        if is_straight && !is_fisheye && coefficients.all(|&k| k == 0.0) {
+            return None;
         }
-        Err(format!(
-            "{what} is a {} camera with lens distortion, which a splat renderer has not; undistort the pictures \
-             and export their cameras",
-            shortened(model)
-        ))
+        let model = match model {
+            "PINHOLE" | "SIMPLE_PINHOLE" => "OPENCV",
+            bent => bent,
+        };
+        Some(model.into())
+    }
+
+    /// The camera with this pose, whatever its lens does to straight lines.
+    fn pinhole(&self, rows: &[[f64; 4]], what: &str) -> Outcome {
+        const NO_PINHOLES: [&str; 6] = [
+            "EQUIRECTANGULAR",
+            "OMNIDIRECTIONALSTEREO_L",
+            "OMNIDIRECTIONALSTEREO_R",
+            "VR180_L",
+            "VR180_R",
+            "ORTHOPHOTO",
+        ];
+        let model = self.camera_model.as_deref().unwrap_or_default();
+        if NO_PINHOLES.contains(&model) {
+            return Err(format!(
+                "{what} is a camera of the model {model}, which has no pinhole; give another one"
+            ));
+        }
+        let (size, focal) = self.size_and_focal(what)?;
+        let parts = Parts {
+            width: size.0,
+            height: size.1,
+            focal,
+            centre: (self.cx, self.cy),
+            pose: pose(rows, "transform_matrix", what)?,
+        };
+        parts.camera(what)
     }
 
     /// Picture size and focal lengths, from lengths or from angles.
@@ -117,18 +160,22 @@ impl Intrinsics {
 
 /// The pose of an OpenGL camera, from the rows of a matrix that the file calls `name`.
 fn pose(rows: &[[f64; 4]], name: &str, what: &str) -> Result<Pose, String> {
-    let whole =
-        matches!(rows.len(), 3 | 4) && rows.get(3).is_none_or(|row| *row == [0.0, 0.0, 0.0, 1.0]);
-    if !whole {
-        return Err(format!(
-            "the {name} of {what} is no rigid 4x4 matrix; export the cameras again"
-        ));
-    }
-    let column = |i: usize| DVec3::new(rows[0][i], rows[1][i], rows[2][i]);
+    let row = |at: usize| rows.get(at).copied().map(DVec4::from);
+    let whole = match (row(0), row(1), row(2), row(3), rows.len()) {
+        (Some(x), Some(y), Some(z), last, 3 | 4) => {
+            let transposed = DMat4::from_cols(x, y, z, last.unwrap_or(DVec4::W));
+            affine(transposed.transpose())
+        }
+        _ => None,
+    };
+    let matrix = whole.ok_or_else(|| {
+        format!("the {name} of {what} is no 4x4 matrix that ends in 0, 0, 0, 1; export the cameras again")
+    })?;
+    let [x, y, z] = DMat3::from_mat4(matrix).to_cols_array_2d().map(DVec3::from);
     // OpenGL's up and backward are our down and forward, turned round.
     Ok(Pose::CameraToWorld {
-        axes: DMat3::from_cols(column(0), -column(1), -column(2)),
-        eye: column(3),
+        axes: DMat3::from_cols(x, -y, -z),
+        eye: matrix.w_axis.truncate(),
     })
 }
 
@@ -160,7 +207,7 @@ pub(super) fn is_path(json: &[u8]) -> bool {
     json::parse::<Any>(json).is_ok()
 }
 
-pub(super) fn parse_path(json: &[u8]) -> Result<Vec<NamedCamera>, String> {
+pub(super) fn parse_path(json: &[u8]) -> Result<Vec<Entry>, String> {
     let file: CameraPath = json::parse(json)?;
     let kind = file.camera_type.as_deref().unwrap_or("perspective");
     if kind != "perspective" {
@@ -169,52 +216,59 @@ pub(super) fn parse_path(json: &[u8]) -> Result<Vec<NamedCamera>, String> {
             shortened(kind)
         ));
     }
-    let named = |(number, camera): (usize, PathCamera)| {
+    let size = (file.render_width, file.render_height);
+    let entry = |(number, camera): (usize, PathCamera)| {
         let what = format!("camera {number} of the path");
-        let (rows, rest) = camera.camera_to_world.as_chunks::<4>();
-        if !(rest.is_empty() && camera.fov > 0.0 && camera.fov < 180.0) {
+        let pinhole = camera.pinhole(size, &what);
+        Entry {
+            name: number.to_string(),
+            what,
+            lens: None,
+            pinhole,
+        }
+    };
+    Ok(file
+        .camera_path
+        .into_iter()
+        .enumerate()
+        .map(entry)
+        .collect())
+}
+
+impl PathCamera {
+    /// The camera of a picture of this size.
+    fn pinhole(&self, (width, height): Pair, what: &str) -> Outcome {
+        let (rows, rest) = self.camera_to_world.as_chunks::<4>();
+        if !(rest.is_empty() && self.fov > 0.0 && self.fov < 180.0) {
             return Err(format!(
                 "{what} has no matrix of 16 numbers, or an angle that is not between 0 and 180 degrees; export the path again"
             ));
         }
-        let focal = file.render_height / 2.0 / (camera.fov.to_radians() / 2.0).tan();
+        let focal = height / 2.0 / (self.fov.to_radians() / 2.0).tan();
         let parts = Parts {
-            width: file.render_width,
-            height: file.render_height,
+            width,
+            height,
             focal: (focal, focal),
             centre: (None, None),
-            pose: pose(rows, "camera_to_world", &what)?,
+            pose: pose(rows, "camera_to_world", what)?,
         };
-        Ok(NamedCamera {
-            name: number.to_string(),
-            camera: parts.camera(&what)?,
-        })
-    };
-    file.camera_path
-        .into_iter()
-        .enumerate()
-        .map(named)
-        .collect()
+        parts.camera(what)
+    }
 }
 
-pub(super) fn parse(json: &[u8]) -> Result<Vec<NamedCamera>, String> {
+pub(super) fn parse(json: &[u8]) -> Result<Vec<Entry>, String> {
     let file: Transforms = json::parse(json)?;
-    let shared = file.shared;
-    let named = |(number, frame): (usize, TransformsFrame)| {
+    let entry = |(number, frame): (usize, TransformsFrame)| {
         let name = frame.file_path.unwrap_or_else(|| number.to_string());
         let what = format!("frame {number} (`{}`)", shortened(&name));
-        let intrinsics = frame.own.or(&shared);
-        intrinsics.check_undistorted(&what)?;
-        let (size, focal) = intrinsics.size_and_focal(&what)?;
-        let parts = Parts {
-            width: size.0,
-            height: size.1,
-            focal,
-            centre: (intrinsics.cx, intrinsics.cy),
-            pose: pose(&frame.transform_matrix, "transform_matrix", &what)?,
-        };
-        let camera = parts.camera(&what)?;
-        Ok(NamedCamera { name, camera })
+        let intrinsics = frame.own.or(&file.shared);
+        let pinhole = intrinsics.pinhole(&frame.transform_matrix, &what);
+        Entry {
+            name,
+            what,
+            lens: intrinsics.distortion(),
+            pinhole,
+        }
     };
-    file.frames.into_iter().enumerate().map(named).collect()
+    Ok(file.frames.into_iter().enumerate().map(entry).collect())
 }

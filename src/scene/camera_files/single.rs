@@ -1,10 +1,11 @@
 //! Our own files of one camera, or of a list: the matrix as a renderer has it.
 
-use glam::{DMat3, DMat4, DVec3, DVec4};
+use glam::{DMat3, DMat4, DVec3};
 use serde::de::IgnoredAny;
 use serde::{Deserialize, Serialize, Serializer};
 
-use super::{NamedCamera, Parts, Pose};
+use super::rigid::{self, Rigid};
+use super::{Entry, Outcome, Parts, Pose};
 use crate::camera::{Camera, Projection};
 use rara_base::error::shortened;
 use rara_base::json;
@@ -67,28 +68,37 @@ impl From<&Camera> for SavedCamera {
     }
 }
 
-pub(super) fn parse(json: &[u8]) -> Result<Camera, String> {
-    json::parse::<SavedCamera>(json)?.camera("the camera")
+/// What tells our own cameras from those of others.
+#[derive(Deserialize)]
+struct CameraRecord {
+    world_to_camera: Option<IgnoredAny>,
+}
+
+/// True for one of our own cameras.
+pub(super) fn is_one(json: &[u8]) -> bool {
+    let record = serde_json::from_slice::<CameraRecord>(json);
+    record.is_ok_and(|record| record.world_to_camera.is_some())
 }
 
 /// True for a list of our own cameras.
 pub(super) fn is_list(json: &[u8]) -> bool {
-    #[derive(Deserialize)]
-    struct CameraRecord {
-        world_to_camera: Option<IgnoredAny>,
-    }
     let entries = serde_json::from_slice::<Vec<CameraRecord>>(json);
     entries.is_ok_and(|entries| entries.iter().any(|entry| entry.world_to_camera.is_some()))
 }
 
-pub(super) fn parse_list(json: &[u8]) -> Result<Vec<NamedCamera>, String> {
+pub(super) fn parse(json: &[u8]) -> Result<Entry, String> {
+    let camera: SavedCamera = json::parse(json)?;
+    Ok(camera.entry("0".into(), "the camera".into()))
+}
+
+pub(super) fn parse_list(json: &[u8]) -> Result<Vec<Entry>, String> {
     let entries: Vec<SavedCamera> = json::parse(json)?;
     let named = |(number, mut entry): (usize, SavedCamera)| {
         let name = entry.name.take().unwrap_or_else(|| number.to_string());
-        let camera = entry.camera(&format!("camera {number} (`{}`)", shortened(&name)))?;
-        Ok(NamedCamera { name, camera })
+        let what = format!("camera {number} (`{}`)", shortened(&name));
+        entry.entry(name, what)
     };
-    entries.into_iter().enumerate().map(named).collect()
+    Ok(entries.into_iter().enumerate().map(named).collect())
 }
 
 impl SavedCamera {
@@ -100,23 +110,37 @@ impl SavedCamera {
         }
     }
 
-    /// The camera, or what is wrong with it; `what` names it.
-    fn camera(self, what: &str) -> Result<Camera, String> {
-        let matrix = DMat4::from_cols_array(&self.world_to_camera).transpose();
-        if matrix.row(3) != DVec4::W {
-            return Err(format!(
-                "the last row of world_to_camera of {what} is not 0, 0, 0, 1; write the matrix row by row"
-            ));
+    fn entry(self, name: String, what: String) -> Entry {
+        let pinhole = self.camera(&what);
+        Entry {
+            name,
+            what,
+            lens: None,
+            pinhole,
         }
+    }
+
+    /// The camera, or what is wrong with it; `what` names it.
+    fn camera(self, what: &str) -> Outcome {
+        let matrix = DMat4::from_cols_array(&self.world_to_camera).transpose();
+        let matrix = rigid::affine(matrix).ok_or_else(|| {
+            format!("the last row of world_to_camera of {what} is not 0, 0, 0, 1; write the matrix row by row")
+        })?;
+        let file = Rigid::new(DMat3::from_mat4(matrix));
+        let unit = match self.projection {
+            Projection::Perspective => 1.0,
+            Projection::Orthographic => file.scale,
+        };
         let parts = Parts {
             width: self.width,
             height: self.height,
-            focal: (self.fx, self.fy),
+            focal: (unit * self.fx, unit * self.fy),
             centre: (self.cx, self.cy),
             pose: Pose::WorldToCamera(matrix),
         };
-        let mut camera = parts
-            .camera(what)?
+        let mut repaired = parts.camera(what)?;
+        let mut camera = repaired
+            .camera
             .projection(self.projection)
             .clip_near(self.clip_near)
             .clip_far(self.clip_far)
@@ -125,7 +149,8 @@ impl SavedCamera {
         checked.map_err(|error| format!("{what}: {error}"))?;
         if let Some(eye) = self.eye.map(DVec3::from) {
             let apart = eye.distance(camera.eye);
-            if apart.is_nan() || apart > EYE_TOLERANCE * camera.eye.length().max(1.0) {
+            let tolerance = EYE_TOLERANCE + 2.0 * file.oblique;
+            if apart.is_nan() || apart > tolerance * camera.eye.length().max(1.0) {
                 return Err(format!(
                     "the eye of {what} is {eye}, and its world_to_camera puts it at {}; leave out eye, or write the matrix of \
                      that eye",
@@ -140,6 +165,7 @@ impl SavedCamera {
                 camera.rotation = rotation;
             }
         }
-        Ok(camera)
+        repaired.camera = camera;
+        Ok(repaired)
     }
 }

@@ -4,8 +4,8 @@
 use std::path::Path;
 
 use libfuzzer_sys::fuzz_target;
-use rara::camera_files::{ColmapFormat, cameras_from_colmap};
-use rara_fuzz::{assert_camera, assert_readable, within};
+use rara::camera_files::{ColmapFormat, NamedCamera, cameras_from_colmap};
+use rara_fuzz::{assert_named, assert_readable, within};
 
 const SPLIT: &[u8] = b"SPLIT";
 
@@ -27,10 +27,8 @@ fuzz_target!(|bytes: &[u8]| {
     let load = || cameras_from_colmap(format, cameras, images, Path::new("fuzz"));
     match within(64 << 10, 40, bytes, load) {
         Ok(cameras) => {
-            assert!(!cameras.is_empty() && cameras.is_sorted_by_key(|named| &named.name));
-            cameras
-                .iter()
-                .for_each(|named| assert_camera(&named.camera));
+            assert!(!cameras.is_empty() && cameras.is_sorted_by_key(NamedCamera::name));
+            cameras.iter().for_each(assert_named);
         }
         Err(error) => assert_readable(&error),
     }

@@ -41,8 +41,8 @@ pub mod scene {
     };
     #[cfg(feature = "formats")]
     pub use rara_scene::{
-        Format, LoadReport, Remark, SceneFile, load, load_from, load_from_with, load_with, save,
-        save_ply, saved_format,
+        Format, LoadReport, Remark, SaveOptions, SceneFile, load, load_from, load_from_with,
+        load_with, save, save_ply, save_with, saved_format,
     };
 }
 

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use glam::{DQuat, DVec3};
-use rara::scene::{self, Part};
+use rara::scene::{self, Part, SaveOptions};
 use rara::{Clip, LayerState, Placement};
 use serde::Serialize;
 
@@ -50,6 +50,11 @@ pub(super) struct Convert {
     /// Moves the scene
     #[arg(long = "move", value_name = "X,Y,Z", value_parser = values::vec3, allow_hyphen_values = true)]
     offset: Option<DVec3>,
+    /// The version of a .spz file
+    ///
+    /// 2 is for older programs. 4 is compressed with zstd in place of gzip, and needs programs of 2026.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=4), default_value_t = SaveOptions::default().spz_version)]
+    spz_version: u32,
     /// Print what was done as JSON to stdout
     #[arg(long)]
     json: bool,
@@ -124,7 +129,8 @@ impl Convert {
         if let Some(degree) = self.sh_degree.filter(|&degree| degree < whole.sh_degree()) {
             whole.set_sh_degree(degree);
         }
-        document.clamped = scene::save(&self.output, &whole)?;
+        let options = SaveOptions::default().spz_version(self.spz_version);
+        document.clamped = scene::save_with(&self.output, &whole, &options)?;
         if let Some(note) = trained::lost(format, whole.training()) {
             say(format_args!("warning: {note}"));
             document.notes.push(note);

@@ -71,7 +71,7 @@ pub use {
     format::Format,
     load::{SceneFile, load, load_from, load_from_with, load_with},
     report::{LoadReport, Remark},
-    save::{save, save_ply, saved_format},
+    save::{SaveOptions, save, save_ply, save_with, saved_format},
 };
 
 // What examples in the documentation name as users of rara do.

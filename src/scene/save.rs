@@ -8,6 +8,7 @@ use super::formats::WRITERS;
 use super::{Format, Gaussians, Training};
 use rara_base::error::{Error, Result};
 use rara_base::files::write_atomically;
+use rara_base::setters;
 
 /// The number written as the logarithm of a scale of exactly zero: exp(-104) is below the smallest single-precision
 /// number, so that loading gives zero again, and other readers see a finite number.
@@ -45,10 +46,34 @@ pub fn save_ply(path: &Path, gaussians: &Gaussians) -> Result<()> {
 /// [`Error::Invalid`] for a name of another format, for a number that no reader could draw, and for centres that the format
 /// cannot hold; [`Error::Io`] if the file can't be written.
 pub fn save(path: &Path, gaussians: &Gaussians) -> Result<u64> {
+    save_with(path, gaussians, &SaveOptions::default())
+}
+
+setters! {
+    /// What a format leaves open that [`save_with`] writes.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    #[non_exhaustive]
+    pub struct SaveOptions {
+        /// The version of a `.spz` file: 2, which the oldest readers know, 3, or 4, whose attributes are streams of zstd, each by itself.
+        pub spz_version: u32,
+    }
+}
+
+impl Default for SaveOptions {
+    fn default() -> Self {
+        Self { spz_version: 3 }
+    }
+}
+
+/// Like [`save`], as the options say.
+///
+/// # Errors
+/// Those of [`save`], and [`Error::Invalid`] for a version that is not written.
+pub fn save_with(path: &Path, gaussians: &Gaussians, options: &SaveOptions) -> Result<u64> {
     let format = saved_format(path)?;
     if let Some(writer) = WRITERS.iter().find(|writer| writer.format == format) {
         check(path, gaussians)?;
-        let (bytes, clamped) = writer.encode(gaussians)?;
+        let (bytes, clamped) = writer.encode(gaussians, options)?;
         write_atomically(path, |out| out.write_all(&bytes))?;
         return Ok(clamped);
     }

@@ -23,6 +23,22 @@ fn rows(bytes: &[u8]) -> Vec<Vec<f32>> {
 }
 
 #[test]
+fn spz_is_written_in_the_version_that_is_asked_for() {
+    let here = folder("convert_versions");
+    scene(&here);
+    for version in ["2", "3", "4"] {
+        done(line(
+            &here,
+            &format!("convert @/scene.ply -o @/v.spz --spz-version {version}"),
+        ));
+        let bytes = fs::read(here.join("v.spz")).expect("a scene");
+        assert_eq!(bytes.starts_with(b"NGSP"), version == "4", "{version}");
+    }
+    let output = line(&here, "convert @/scene.ply -o @/v.spz --spz-version 1");
+    refused(&output, 2, "--spz-version");
+}
+
+#[test]
 fn every_format_is_written_and_named() {
     let here = folder("convert");
     scene(&here);

@@ -10,10 +10,10 @@ use super::{Failure, FormatOutput, room};
 use crate::placement::Placement;
 use rara_base::counted::counted;
 
-const MAGIC: &[u8; 4] = b"NGSP";
+pub(super) const MAGIC: &[u8; 4] = b"NGSP";
 /// Bytes of the header that all versions have, and of version 4's.
 const HEADER: u64 = 16;
-const HEADER_4: u64 = 32;
+pub(super) const HEADER_4: u64 = 32;
 /// The flag for Gaussians that were trained antialiased.
 pub(super) const ANTIALIASED: u8 = 1;
 /// The flag for records after the Gaussians.

@@ -1,7 +1,7 @@
 //! What is written is read again as it was, within the format's steps.
 
 use rara::glam::{Quat, Vec3};
-use rara::scene::{Kind, generate, load, save, save_ply};
+use rara::scene::{Kind, SaveOptions, generate, load, save, save_ply, save_with};
 use rara::{Gaussians, Placement};
 
 use super::distance::Distance;
@@ -150,6 +150,79 @@ fn scenes_of_nothing_and_of_extremes_are_written() {
             let loaded = load(&path, &mut |_, _| ()).unwrap();
             assert!(loaded.report.is_clean(), "{name}: {}", loaded.report);
             assert_eq!(loaded.gaussians.len(), scene.len(), "{name}");
+        }
+    }
+}
+
+/// Chunks of a wide and flat scene are small: a curve through it jumps from one side to the other, and a chunk with such a jump has
+/// steps of half a metre in a kilometre.
+#[test]
+fn chunks_of_wide_scenes_are_small() {
+    let folder = Folder::new("formats-chunks");
+    for flat in 0..3 {
+        let mut scene = generate(Kind::Layers, 200_000, 5);
+        let mut number = 9_u32;
+        let mut share = || {
+            number = number.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (number >> 8) as f32 / (1 << 24) as f32
+        };
+        for position in scene.positions_mut() {
+            *position = 1000.0 * Vec3::new(share(), share(), share());
+            position[flat] *= 0.01;
+        }
+        let path = folder.join("wide.compressed.ply");
+        save(&path, &scene).unwrap();
+        let loaded = load(&path, &mut |_, _| ()).unwrap().gaussians;
+        // The order is another one.
+        let along = |scene: &Gaussians, axis: usize| {
+            let mut all: Vec<f32> = scene.positions().iter().map(|p| p[axis]).collect();
+            all.sort_by(f32::total_cmp);
+            all
+        };
+        for axis in 0..3 {
+            let pairs = along(&scene, axis).into_iter().zip(along(&loaded, axis));
+            let error = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+            assert!(error < 0.024, "flat along {flat}: {error} along {axis}");
+        }
+    }
+}
+
+/// Every version of .spz that is written holds the same numbers; rotations of the second in steps of their own.
+#[test]
+fn versions_of_spz() {
+    let folder = Folder::new("formats-versions");
+    for scene in [
+        scene(700),
+        generate(Kind::Layers, 30, 2),
+        Gaussians::default(),
+    ] {
+        let written = |version: u32| {
+            let path = folder.join(format!("v{version}.spz"));
+            let options = SaveOptions::default().spz_version(version);
+            save_with(&path, &scene, &options).unwrap();
+            let loaded = load(&path, &mut |_, _| ()).unwrap();
+            assert!(loaded.report.is_clean(), "{version}: {}", loaded.report);
+            (std::fs::read(&path).unwrap(), loaded.gaussians)
+        };
+        let [(_, second), (third, of_third), (fourth, of_fourth)] = [2, 3, 4].map(written);
+        assert_eq!(of_third, of_fourth);
+        assert!(third.starts_with(&[0x1f, 0x8b]) && fourth.starts_with(b"NGSP\x04\0\0\0"));
+        save(&folder.join("usual.spz"), &scene).unwrap();
+        assert_eq!(third, std::fs::read(folder.join("usual.spz")).unwrap());
+        let mut as_second = of_third.clone();
+        as_second
+            .rotations_mut()
+            .copy_from_slice(second.rotations());
+        assert_eq!(second, as_second);
+        for (read, given) in second.rotations().iter().zip(scene.rotations()) {
+            let sign = if given.w < 0.0 { -1.0 } else { 1.0 };
+            let apart = (*read * sign - *given).xyz().abs();
+            assert!(apart.max_element() < 1.0 / 254.0, "{read} {given}");
+        }
+        for version in [0, 1, 5] {
+            let options = SaveOptions::default().spz_version(version);
+            let error = save_with(&folder.join("no.spz"), &scene, &options).unwrap_err();
+            assert!(error.to_string().contains("give 2, 3 or 4"), "{error}");
         }
     }
 }

@@ -8,7 +8,7 @@ mod spz;
 
 use glam::Vec3;
 
-use super::super::{Format, Gaussians};
+use super::super::{Format, Gaussians, SaveOptions};
 use rara_base::error::Result;
 
 /// How files of a format are written.
@@ -16,7 +16,7 @@ pub(in super::super) struct Writer {
     pub(in super::super) format: Format,
     /// The ending of their names.
     pub(in super::super) ending: &'static str,
-    encode: fn(&Gaussians) -> Result<Vec<u8>>,
+    encode: fn(&Gaussians, &SaveOptions) -> Result<Vec<u8>>,
     ranges: Ranges,
 }
 
@@ -24,25 +24,25 @@ pub(in super::super) const WRITERS: [Writer; 4] = [
     Writer {
         format: Format::CompressedPly,
         ending: ".compressed.ply",
-        encode: |gaussians| Ok(packed::encode(gaussians)),
+        encode: |gaussians, _| Ok(packed::encode(gaussians)),
         ranges: packed::RANGES,
     },
     Writer {
         format: Format::Spz,
         ending: ".spz",
-        encode: spz::encode,
+        encode: |gaussians, options| spz::encode(gaussians, options.spz_version),
         ranges: spz::RANGES,
     },
     Writer {
         format: Format::Sog,
         ending: ".sog",
-        encode: sog::encode,
+        encode: |gaussians, _| sog::encode(gaussians),
         ranges: sog::RANGES,
     },
     Writer {
         format: Format::Gltf,
         ending: ".glb",
-        encode: glb::encode,
+        encode: |gaussians, _| glb::encode(gaussians),
         ranges: Ranges::ALL,
     },
 ];
@@ -52,8 +52,12 @@ impl Writer {
     ///
     /// # Errors
     /// [`Error::Invalid`](rara_base::error::Error::Invalid) for Gaussians that it cannot hold.
-    pub(in super::super) fn encode(&self, gaussians: &Gaussians) -> Result<(Vec<u8>, u64)> {
-        let bytes = (self.encode)(gaussians)?;
+    pub(in super::super) fn encode(
+        &self,
+        gaussians: &Gaussians,
+        options: &SaveOptions,
+    ) -> Result<(Vec<u8>, u64)> {
+        let bytes = (self.encode)(gaussians, options)?;
         let beyond = |&at: &usize| !self.ranges.hold(gaussians, at);
         Ok((bytes, (0..gaussians.len()).filter(beyond).count() as u64))
     }

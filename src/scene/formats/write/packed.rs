@@ -1,8 +1,10 @@
 //! Writing `.compressed.ply`.
 
+use glam::{DVec3, Vec3};
+
 use super::super::super::save::training_comments;
 use super::super::super::{Gaussians, SH_0};
-use super::{ANY, Ranges, along_a_curve, byte, smallest_three};
+use super::{ANY, Ranges, byte, smallest_three};
 
 /// Gaussians in a chunk.
 const CHUNK: usize = 256;
@@ -14,6 +16,9 @@ pub(super) const RANGES: Ranges = Ranges {
     colours: ANY,
     coefficients: [-4.0, 4.0],
 };
+
+/// Steps of a chunk's range, in 11, 10 and 11 bits.
+const STEPS: DVec3 = DVec3::new(2047.0, 1023.0, 2047.0);
 
 /// The ends of a chunk's values of three parts.
 struct Range([f32; 3], [f32; 3]);
@@ -46,8 +51,42 @@ impl Range {
     }
 }
 
+/// Orders Gaussians so that those of a chunk are close together: it cuts them across the longest side of their box, down to chunks
+/// that are as wide as deep. Chunks of a space-filling curve would be as large as the scene where the curve jumps.
+fn gather(order: &mut [u32], positions: &[Vec3]) {
+    let chunks = order.len().div_ceil(CHUNK);
+    if chunks <= 1 {
+        return;
+    }
+    let corner = |pick: fn(Vec3, Vec3) -> Vec3| {
+        let centres = order.iter().map(|&at| positions[at as usize]);
+        centres.reduce(pick).unwrap_or_default()
+    };
+    let sides = (corner(Vec3::max).as_dvec3() - corner(Vec3::min).as_dvec3()) / STEPS;
+    let axis = sides.max_position();
+    // The side of a chunk in a row of them, a layer, or a block.
+    let mut sorted = sides.to_array();
+    sorted.sort_by(f64::total_cmp);
+    let [c, b, a] = sorted;
+    let count = chunks as f64;
+    let side = (a / count)
+        .max((a * b / count).sqrt().min(b))
+        .max((a * b * c / count).cbrt().min(c));
+    let across = (a / side).round().clamp(2.0, count);
+    let below = count * (across / 2.0).floor() / across;
+    let middle = (below.round() as usize).clamp(1, chunks - 1) * CHUNK;
+    let along = |at: u32| positions[at as usize][axis];
+    order.select_nth_unstable_by(middle, |&a, &b| {
+        along(a).total_cmp(&along(b)).then(a.cmp(&b))
+    });
+    let (below, above) = order.split_at_mut(middle);
+    gather(below, positions);
+    gather(above, positions);
+}
+
 pub(super) fn encode(gaussians: &Gaussians) -> Vec<u8> {
-    let order = along_a_curve(gaussians);
+    let mut order: Vec<u32> = (0..gaussians.len() as u32).collect();
+    gather(&mut order, gaussians.positions());
     let rest = 3 * (gaussians.sh_coefficients() - 1);
     let chunks = order.chunks(CHUNK);
     let mut header = format!(
@@ -133,10 +172,10 @@ pub(super) fn encode(gaussians: &Gaussians) -> Vec<u8> {
     bytes
 }
 
-/// Shares in 11, 10 and 11 bits.
+/// Shares in steps.
 fn thirds(range: &Range, value: [f64; 3]) -> u32 {
-    let part = |part: usize, most: f64| (range.share(part, value[part]) * most).round() as u32;
-    part(0, 2047.0) << 21 | part(1, 1023.0) << 11 | part(2, 2047.0)
+    let part = |part: usize| (range.share(part, value[part]) * STEPS[part]).round() as u32;
+    part(0) << 21 | part(1) << 11 | part(2)
 }
 
 fn quaternion(parts: [f32; 4]) -> u32 {

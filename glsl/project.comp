@@ -141,6 +141,7 @@ void main() {
     }
     // Positive floats order like their bits. Counted from the nearest depth that the scene's bounds allow they need
     // fewer bits, and the sort fewer passes; dropping low bits never reverses an order.
-    uint depth = max(floatBitsToUint(f.view_centre.z), FRAME.order.key_near) - FRAME.order.key_near;
+    float far = FRAME.order.by_distance == 0u ? f.view_centre.z : dot(f.view_centre, f.view_centre);
+    uint depth = max(floatBitsToUint(far), FRAME.order.key_near) - FRAME.order.key_near;
     depth_keys.at[splat_index] = min(depth, FRAME.order.key_span) >> FRAME.order.key_shift;
 }

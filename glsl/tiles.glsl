@@ -99,7 +99,8 @@ void blend(Seen splat, Record record, vec2 delta, bool may_be_cut) {
         alpha[row] = a >= ALPHA_MIN ? a : 0.0;
     }
     // Where the sort has compared whole depths, all that follows is hidden too.
-    done = DEPTH_FORM != DEPTH_NONE && hide(splat.far, alpha) && FRAME.order.key_shift == 0u;
+    bool are_sorted = FRAME.order.key_shift == 0u && FRAME.order.by_distance == 0u;
+    done = DEPTH_FORM != DEPTH_NONE && hide(splat.far, alpha) && are_sorted;
     if (!done) {
         float weight[ROWS];
         if (SHOW == SHOW_WEIGHT) {

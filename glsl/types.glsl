@@ -29,10 +29,12 @@ struct ViewData {
 
 // The order of the splats.
 struct OrderData {
-    uint key_near; // bits of the nearest depth a centre can have
-    uint key_span; // by how much the farthest depth's bits exceed them
+    uint key_near; // bits of the least depth a centre can have
+    uint key_span; // by how much the greatest depth's bits exceed them
     uint key_shift; // low bits of the difference that the sort does without
     uint sort_runs; // invocations of the sort by runs; 0 for the sort by partitions
+    uint by_distance; // 1: keys are of the distances' squares, in place of depths
+    uint pad[3]; // unused
 };
 
 // The tiles of the picture.

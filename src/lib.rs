@@ -36,8 +36,7 @@ pub mod gpu {
 pub mod scene {
     pub use rara_scene::{
         Attribute, Bounds, Comparison, GaussianArrays, Gaussians, Kind, Layer, LayerState, Part,
-        Predicate, Property, Scene, Training, cross_section, extent_along, generate,
-        sh_coefficients,
+        Predicate, Property, Scene, cross_section, extent_along, generate, sh_coefficients,
     };
     #[cfg(feature = "formats")]
     pub use rara_scene::{
@@ -63,7 +62,7 @@ pub use rara_scene::{
     Aov, Bounds, Camera, Channel, Clip, ClipOp, Cue, Cues, Decay, DepthMap, ExactForm,
     GaussianArrays, Gaussians, Layer, LayerState, Miss, Mode, Ndc, PhiForm, Picture, Placement,
     Plane, Precision, Preset, Projection, Quadric, Raster, Scene, Settings, ShFormat, Shape, Show,
-    Surface, TargetFormat,
+    SortBy, Surface, TargetFormat, Training,
 };
 pub use renderer::{
     ColorSpace, ConfiguredFrame, DepthDesc, ExpectedDepthDesc, FrameLimits, Pick, PickTicket,

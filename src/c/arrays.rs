@@ -1,8 +1,8 @@
 //! Gaussians from a host's own arrays.
 
+use rara::Training;
 use rara::ash::vk;
 use rara::glam::{Quat, Vec3};
-use rara::scene::Training;
 use rara::{Error, GaussianArrays, Gaussians, Result};
 
 use crate::boundary::{RaraResult, Versioned, guard, invalid, read, versioned, write};

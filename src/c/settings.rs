@@ -3,6 +3,7 @@
 use rara::ash::vk;
 use rara::{
     Decay, ExactForm, Miss, Mode, PhiForm, Precision, Preset, Raster, Result, Settings, Show,
+    SortBy,
 };
 
 use crate::boundary::{RaraResult, guard, invalid, read, versioned, write};
@@ -68,6 +69,15 @@ pub const RARA_SHOW_COUNT: RaraShow = 2;
 /// The mean of the splats' colours, each weighted by its alpha, in no order. Only tiles make it.
 pub const RARA_SHOW_MEAN: RaraShow = 3;
 
+/// The order in which splats are blended.
+pub type RaraSortBy = u32;
+/// What all visible layers ask for (glTF by distance, other files by depth), or by depth where they differ. The default.
+pub const RARA_SORT_BY_SCENE: RaraSortBy = 0;
+/// By the depth of their centres along the view axis, as 3DGS does.
+pub const RARA_SORT_BY_DEPTH: RaraSortBy = 1;
+/// By the distance of their centres from the eye.
+pub const RARA_SORT_BY_DISTANCE: RaraSortBy = 2;
+
 /// RARA_MODE_EXACT only: how the normal distribution's Phi is approximated, and the largest error.
 pub type RaraPhiForm = u32;
 /// 1.9e-5.
@@ -119,6 +129,8 @@ pub struct RaraSettings {
     pub beam_switch: f32,
     /// Tiles only: a pixel with less transmittance than this is saturated. Zero blends everything.
     pub transmittance_min: f32,
+    /// The order of the splats.
+    pub sort_by: RaraSortBy,
 }
 
 versioned!(RaraSettings);
@@ -155,6 +167,11 @@ const SHOWS: [(RaraShow, Show); 4] = [
     (RARA_SHOW_WEIGHT, Show::Weight),
     (RARA_SHOW_COUNT, Show::Count),
     (RARA_SHOW_MEAN, Show::Mean),
+];
+const ORDERS: [(RaraSortBy, Option<SortBy>); 3] = [
+    (RARA_SORT_BY_SCENE, None),
+    (RARA_SORT_BY_DEPTH, Some(SortBy::Depth)),
+    (RARA_SORT_BY_DISTANCE, Some(SortBy::Distance)),
 ];
 const PHI_FORMS: [(RaraPhiForm, PhiForm); 3] = [
     (RARA_PHI_FORM_QUINTIC, PhiForm::Quintic),
@@ -196,6 +213,7 @@ impl RaraSettings {
             sh_degree,
             raster,
             show,
+            sort_by,
             precision,
         ) = settings.fields();
         // The first two belong to the target and the scene.
@@ -215,6 +233,7 @@ impl RaraSettings {
             key_bits,
             beam_switch,
             transmittance_min,
+            sort_by: code(&ORDERS, sort_by),
         }
     }
 
@@ -234,6 +253,7 @@ impl RaraSettings {
             key_bits,
             beam_switch,
             transmittance_min,
+            sort_by,
         } = *self;
         // What belongs to the scene and the target, not to a frame, keeps its default.
         let precision = Precision::default()
@@ -251,6 +271,11 @@ impl RaraSettings {
             .sh_degree(u32::try_from(sh_degree).ok())
             .raster(value(&RASTERS, raster, ("settings->raster", "RaraRaster"))?)
             .show(value(&SHOWS, show, ("settings->show", "RaraShow"))?)
+            .sort_by(value(
+                &ORDERS,
+                sort_by,
+                ("settings->sort_by", "RaraSortBy"),
+            )?)
             .precision(precision))
     }
 }

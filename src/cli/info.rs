@@ -9,6 +9,7 @@ use super::failure::Failure;
 use super::output::{self, grouped};
 use super::scene_layers::LoadedLayer;
 use super::scenes::SceneArgs;
+use super::values;
 use rara::scene::Bounds;
 use rara_reference::classify::{Bands, bands};
 
@@ -84,6 +85,8 @@ struct LayerFacts {
     antialiased: bool,
     /// The low-pass that it was trained with, px^2.
     low_pass: f32,
+    /// The order that it asks for: depth or distance.
+    sort_by: String,
     clipped: bool,
     /// What else there is to say of it, where it is one of several.
     #[serde(rename = "statistics", skip_serializing_if = "Option::is_none")]
@@ -102,6 +105,7 @@ impl LayerFacts {
             visible: layer.state.visible,
             antialiased: layer.gaussians.is_antialiased(),
             low_pass: layer.gaussians.low_pass(),
+            sort_by: values::name(layer.gaussians.training().sort_by),
             clipped: layer.clip.is_some(),
             facts: None,
         }
@@ -246,11 +250,12 @@ fn table(document: &InfoJson) -> Vec<String> {
         };
         let low_pass = layer.low_pass;
         lines.push(format!(
-            "  layer        {} ({}): {}, opacity {}{trained}, low-pass {low_pass}{state}",
+            "  layer        {} ({}): {}, opacity {}{trained}, low-pass {low_pass}, by {}{state}",
             layer.name,
             layer.format,
             grouped(layer.gaussians as u64),
-            layer.opacity
+            layer.opacity,
+            layer.sort_by,
         ));
     }
     if let [layer] = &document.layers[..] {
@@ -258,6 +263,7 @@ fn table(document: &InfoJson) -> Vec<String> {
         let trained = if layer.antialiased { "yes" } else { "no" };
         lines.push(format!("antialiased    {trained}"));
         lines.push(format!("low-pass       {} px^2", layer.low_pass));
+        lines.push(format!("sorted by      {}", layer.sort_by));
     }
     lines.push(format!("SH degree      {}", document.sh_degree));
     lines.push(format!("repaired       {}", grouped(document.repaired)));

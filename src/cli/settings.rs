@@ -1,7 +1,9 @@
 //! The flags that say how a frame is drawn, and on which device.
 
 use clap::Args;
-use rara::{Decay, Headless, HeadlessDesc, Miss, Mode, PipelineCache, Raster, Settings, Show};
+use rara::{
+    Decay, Headless, HeadlessDesc, Miss, Mode, PipelineCache, Raster, Settings, Show, SortBy,
+};
 
 use super::failure::Failure;
 use super::precision::PrecisionArgs;
@@ -52,6 +54,11 @@ pub(super) struct LookArgs {
     /// What is shown: colours, or what the clip does to each splat
     #[arg(long, value_name = "WHAT", default_value = "colour")]
     show: Show,
+    /// The order in which splats are blended [default: the scene's]
+    ///
+    /// glTF asks for distance, other files for depth, as 3DGS does; layers that differ are sorted by depth.
+    #[arg(long, value_name = "BY")]
+    sort: Option<SortBy>,
     #[command(flatten)]
     precision: PrecisionArgs,
 }
@@ -92,6 +99,7 @@ pub(super) fn flags(own: &Settings) -> impl Iterator<Item = String> {
         sh_degree,
         raster,
         show,
+        sort_by,
         _precision,
     ) = own.fields();
     let colour = |[r, g, b]: [f32; 3]| format!("--background {r},{g},{b}");
@@ -105,6 +113,7 @@ pub(super) fn flags(own: &Settings) -> impl Iterator<Item = String> {
         sh_degree.map(|degree| format!("--sh-degree {degree}")),
         flag("raster", raster, usual.raster, name),
         flag("show", show, usual.show, name),
+        sort_by.map(|sort_by| format!("--sort {}", name(sort_by))),
     ];
     flags.into_iter().flatten()
 }
@@ -128,6 +137,7 @@ impl LookArgs {
             .sh_degree(self.sh_degree)
             .raster(self.raster)
             .show(self.show)
+            .sort_by(self.sort)
             .precision(self.precision.meant()))
     }
 }

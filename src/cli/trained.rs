@@ -3,11 +3,13 @@
 use std::path::Path;
 
 use clap::Args;
-use rara::scene::{Format, Training};
+use rara::scene::Format;
+use rara::{SortBy, Training};
 
 use super::failure::Failure;
 use super::scene_layers::SceneLayers;
 use super::training;
+use super::values::name;
 
 /// What flags say of how the scene was trained.
 #[derive(Debug, Default, Args)]
@@ -88,6 +90,7 @@ pub(super) fn trained(file: &Path) -> Option<String> {
 
 impl TrainedOptions {
     /// The flags and what they say.
+    #[cfg_attr(not(feature = "view"), allow(dead_code))]
     pub(super) fn texts(&self) -> [(&'static str, &[String]); 2] {
         [
             ("--antialiasing", &self.antialiasing),
@@ -147,32 +150,54 @@ pub(super) fn check_alike(loaded: &SceneLayers) -> Result<(), Failure> {
         return Ok(());
     };
     let training = first.gaussians.training();
-    let other = shown.find(|layer| layer.gaussians.training() != training);
+    // The order of what is one file is that of the first.
+    let other =
+        shown.find(|layer| layer.gaussians.training().sort_by(training.sort_by) != training);
     let Some(other) = other else { return Ok(()) };
-    let flag = match training.low_pass == other.gaussians.low_pass() {
-        true => "--antialiasing on or off",
-        false => "--low-pass",
+    let (own, others) = (training, other.gaussians.training());
+    let (how, flag) = match (own.antialiased, others.antialiased) {
+        (true, false) => (
+            ["antialiased", "was not"].map(String::from),
+            "--antialiasing on or off",
+        ),
+        (false, true) => (
+            ["as it is", "antialiased"].map(String::from),
+            "--antialiasing on or off",
+        ),
+        _ => (
+            [own, others].map(|training| format!("with a low-pass of {} px^2", training.low_pass)),
+            "--low-pass",
+        ),
     };
     Err(Failure::Usage(format!(
-        "the layer '{}' was trained {training} and '{}' {}, and a file of both can say only one of it: write them to a file each, \
-         or say {flag} for all",
-        first.name,
-        other.name,
-        other.gaussians.training()
+        "the layer '{}' was trained {} and '{}' {}, and a file of both can say only one of it: write them to a file each, or \
+         say {flag} for all",
+        first.name, how[0], other.name, how[1],
     )))
 }
 
-/// What to say where a file of this format says less of how its Gaussians were trained.
+/// What to say where a file of this format says less of how its Gaussians were trained, or says it to rara alone.
 pub(super) fn lost(format: Format, training: Training) -> Option<String> {
-    let has_other_low_pass = training.low_pass != Training::default().low_pass;
-    let low_pass = format!("--low-pass {}", training.low_pass);
-    let flags = match (format, training.antialiased, has_other_low_pass) {
-        (Format::Gltf, true, true) => format!("--antialiasing on {low_pass}"),
-        (Format::Gltf, true, false) => "--antialiasing on".into(),
-        (Format::Gltf | Format::Spz, _, true) => low_pass,
+    let usual = match format {
+        Format::Gltf => Training::default().sort_by(SortBy::Distance),
+        Format::Spz => Training::default().antialiased(training.antialiased),
         _ => return None,
     };
-    Some(format!(
-        "{format} cannot say that the scene was trained {training}; draw the file with {flags}"
-    ))
+    let flags = [
+        (training.antialiased != usual.antialiased).then(|| "--antialiasing on".to_owned()),
+        (training.low_pass != usual.low_pass).then(|| format!("--low-pass {}", training.low_pass)),
+        (training.sort_by != usual.sort_by).then(|| format!("--sort {}", name(training.sort_by))),
+    ];
+    let flags: Vec<_> = flags.into_iter().flatten().collect();
+    match (flags.is_empty(), format) {
+        (true, _) => None,
+        (false, Format::Gltf) => Some(format!(
+            "glTF has no property for how the scene was trained, {training}; rara finds it in the file's extras, and others \
+             draw {usual}"
+        )),
+        (false, _) => Some(format!(
+            "{format} cannot say that the scene was trained {training}; draw the file with {}",
+            flags.join(" ")
+        )),
+    }
 }

@@ -1,17 +1,21 @@
-//! The sort compares keys: the bits of a view depth, counted from the nearest one that the scene's bounds allow.
+//! The sort compares keys: the bits of a view depth, or of a distance's square, counted from the least that the scene's bounds
+//! allow.
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 use rara_base::error::{Error, Result};
 use rara_base::limits;
+use rara_scene::SortBy;
 use rara_scene::camera::Camera;
 
 /// How depths become keys: `min(bits(z) - near, span) >> shift`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct DepthKeys {
     pub(super) near: u32,
     pub(super) span: u32,
     pub(super) shift: u32,
+    /// No centre is deeper than this, the scene's units.
+    pub(super) deepest: f64,
 }
 
 impl DepthKeys {
@@ -20,6 +24,7 @@ impl DepthKeys {
     pub(super) fn new(
         boxes: impl Iterator<Item = (Camera, [Vec3; 2], f64)>,
         bits: u32,
+        order: SortBy,
     ) -> Result<Self> {
         if !(limits::SORT_BITS..=u32::BITS).contains(&bits) {
             return Err(Error::Invalid(format!(
@@ -27,21 +32,28 @@ impl DepthKeys {
                 limits::SORT_BITS
             )));
         }
-        let all = boxes.filter_map(|(camera, bounds, unit)| depths(bounds, &camera, unit));
-        let all = all.reduce(|[near, far], [nearer, farther]| [near.min(nearer), far.max(farther)]);
+        let all = boxes.filter_map(|(camera, bounds, unit)| {
+            let depths = depths(bounds, &camera, unit)?;
+            Some(match order {
+                SortBy::Depth => (depths, depths),
+                SortBy::Distance => (depths, squares(bounds, &camera, unit, depths[0])),
+            })
+        });
+        let widest = |[near, far]: [f32; 2], [nearer, farther]: [f32; 2]| {
+            [near.min(nearer), far.max(farther)]
+        };
+        let all = all.reduce(|a, b| (widest(a.0, b.0), widest(a.1, b.1)));
         // Without centres any range will do.
-        let [near, far] = all.unwrap_or([limits::NEAR_Z, f32::MAX]).map(f32::to_bits);
+        let any = [limits::NEAR_Z, f32::MAX];
+        let (depths, keys) = all.unwrap_or((any, any));
+        let [near, far] = keys.map(f32::to_bits);
         let span = far - near;
         Ok(Self {
             near,
             span,
             shift: width(span).saturating_sub(bits),
+            deepest: depths[1].into(),
         })
-    }
-
-    /// No centre is deeper than this, the scene's units.
-    pub(super) fn farthest(self) -> f64 {
-        f32::from_bits(self.near + self.span).into()
     }
 
     /// Passes of the sort that see every bit of a key.
@@ -72,6 +84,17 @@ fn depths(bounds: [Vec3; 2], camera: &Camera, unit: f64) -> Option<[f32; 2]> {
     Some([near as f32, far as f32].map(|depth| depth.min(f32::MAX)))
 }
 
+/// The least and the greatest square of a centre's distance from the eye, likewise. None is less than that of the least depth.
+fn squares(bounds: [Vec3; 2], camera: &Camera, unit: f64, nearest: f32) -> [f32; 2] {
+    let [low, high] = bounds.map(|corner| corner.as_dvec3() - camera.eye);
+    let most = low.abs().max(high.abs());
+    let slack = 1e-5 * most.element_sum();
+    let least = low.max(-high).max(DVec3::ZERO).length() - slack;
+    let near = (unit * least).max(nearest.into());
+    let far = (unit * (most.length() + slack)).max(near);
+    [near, far].map(|distance| ((distance * distance) as f32).min(f32::MAX))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -89,7 +112,7 @@ mod tests {
     }
 
     fn keys_of(bounds: [Vec3; 2], bits: u32) -> Result<DepthKeys> {
-        DepthKeys::new([(camera(), bounds, 1.0)].into_iter(), bits)
+        DepthKeys::new([(camera(), bounds, 1.0)].into_iter(), bits, SortBy::Depth)
     }
 
     fn key(keys: DepthKeys, depth: f32) -> u32 {
@@ -130,7 +153,7 @@ mod tests {
         let empty = [Vec3::INFINITY, Vec3::NEG_INFINITY];
         let camera = camera();
         let boxes = [near, empty, far].map(|bounds| (camera, bounds, 1.0));
-        let all = DepthKeys::new(boxes.into_iter(), 32).unwrap();
+        let all = DepthKeys::new(boxes.into_iter(), 32, SortBy::Depth).unwrap();
         let ends = |keys: DepthKeys| (keys.near, keys.near + keys.span);
         let (first, last) = (keys_of(near, 32).unwrap(), keys_of(far, 32).unwrap());
         assert_eq!(ends(all), (ends(first).0, ends(last).1));
@@ -138,8 +161,35 @@ mod tests {
         let doubled = far.map(|corner| 2.0 * corner);
         let eye = DVec3::new(0.0, 0.0, -8.0);
         let twice = camera.eye(eye);
-        let halved = DepthKeys::new([(twice, doubled, 0.5)].into_iter(), 32).unwrap();
+        let halved = [(twice, doubled, 0.5)].into_iter();
+        let halved = DepthKeys::new(halved, 32, SortBy::Depth).unwrap();
         assert_eq!(ends(halved), ends(last));
+    }
+
+    #[test]
+    fn keys_of_distances_hold_those_of_all_centres() {
+        let camera = camera();
+        for bounds in [
+            [Vec3::NEG_ONE, Vec3::ONE],
+            [Vec3::new(2.0, -1.0, -3.0), Vec3::new(5.0, 4.0, 6.0)],
+            [Vec3::splat(-9.0), Vec3::splat(9.0)], // the eye is inside
+        ] {
+            let boxes = [(camera, bounds, 1.0)].into_iter();
+            let keys = DepthKeys::new(boxes, 32, SortBy::Distance).unwrap();
+            let [least, most] = [keys.near, keys.near + keys.span].map(f32::from_bits);
+            let share = |at: i32| at as f32 / 4.0;
+            for at in 0..125 {
+                let place = Vec3::new(share(at % 5), share(at / 5 % 5), share(at / 25));
+                let centre = (bounds[0] + place * (bounds[1] - bounds[0])).as_dvec3() - camera.eye;
+                let depth = (camera.rotation * centre).z;
+                let square = centre.length_squared() as f32;
+                assert!(depth < camera.nearest(1.0) || (least <= square && square <= most));
+                assert!(depth <= keys.deepest);
+            }
+            assert!(
+                most < 1.01 * (bounds[1] - bounds[0]).as_dvec3().length_squared() as f32 + 400.0
+            );
+        }
     }
 
     #[test]

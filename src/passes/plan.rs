@@ -19,6 +19,7 @@ use rara_base::counted::counted;
 use rara_base::error::{Error, Result};
 use rara_base::limits;
 use rara_gpu::{DeviceShape, Location};
+use rara_scene::SortBy;
 use rara_scene::camera::Camera;
 use rara_scene::clip::{Clip, ClipOp};
 use rara_scene::precision::ShFormat;
@@ -121,7 +122,10 @@ impl Plan {
             settings.precision.fields();
         let weight = weight_data(&scene, &region, &layers, settings, beam_switch)?;
         let boxes = layers::boxes(scene.layers, camera);
-        let keys = DepthKeys::new(boxes, key_bits)?;
+        let trained = scene.layers.iter().filter(|layer| layer.is_visible());
+        let trained = trained.map(SceneLayer::training);
+        let order = settings.order_of(camera, trained);
+        let keys = DepthKeys::new(boxes, key_bits, order)?;
         let degree = settings.sh_degree.unwrap_or(scene.sh_degree);
         let size = vk::Extent2D {
             width: camera.width,
@@ -163,7 +167,7 @@ impl Plan {
                 views: [view_data(
                     camera,
                     scene.whole.unwrap_or(camera),
-                    keys.farthest(),
+                    keys.deepest,
                     degree.min(scene.sh_degree),
                 )],
                 order: OrderData {
@@ -171,6 +175,8 @@ impl Plan {
                     key_span: keys.span,
                     key_shift: keys.shift,
                     sort_runs: scene.sort_runs,
+                    by_distance: (order == SortBy::Distance).into(),
+                    pad: [0; 3],
                 },
                 tiles: tiles_data(size, scene.span_runs, transmittance_min)?,
                 room: RoomData {

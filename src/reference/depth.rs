@@ -192,7 +192,7 @@ pub fn expected<'a, T: Real>(
         .iter()
         .map(|layer| super::sides(layer, settings))
         .collect();
-    let splats = super::in_order::<T>(&layers, &sides, settings);
+    let splats = super::in_order::<T>(&layers, &sides, camera, settings);
     // By their numbers, the layer and the place in it of the scene's Gaussians.
     let mut places = vec![(0, 0); sides.iter().map(Vec::len).sum()];
     for (at, layer) in layers.iter().enumerate() {

@@ -61,7 +61,7 @@ pub fn render<'a, T: Real>(
     let layers = layer::layers(&scene, camera, clip);
     // Find each Gaussian's side.
     let sides: Vec<_> = layers.iter().map(|layer| sides(layer, settings)).collect();
-    let splats = in_order::<T>(&layers, &sides, settings);
+    let splats = in_order::<T>(&layers, &sides, camera, settings);
     // Blend them.
     let picture = splat::splat(&splats, &ViewTransform::new(camera), settings);
     ReferenceFrame {
@@ -81,6 +81,7 @@ fn sides<T: Real>(layer: &LayerView<'_, T>, settings: &Settings) -> Vec<Side> {
 fn in_order<T: Real>(
     layers: &[LayerView<'_, T>],
     sides: &[Vec<Side>],
+    camera: &Camera,
     settings: &Settings,
 ) -> Vec<project::Splat<T>> {
     let mut splats = Vec::new();
@@ -102,7 +103,11 @@ fn in_order<T: Real>(
             Some(splat)
         }));
     }
-    sort::sort(&mut splats);
+    let visible = layers
+        .iter()
+        .filter(|layer| layer.visible && !layer.gaussians.is_empty());
+    let order = settings.order_of(camera, visible.map(|layer| layer.gaussians.training()));
+    sort::sort(&mut splats, order);
     splats
 }
 

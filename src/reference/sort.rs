@@ -4,12 +4,16 @@ use std::cmp::Ordering;
 
 use super::project::Splat;
 use super::real::Real;
+use rara_scene::SortBy;
 
-/// Orders splats by the depth of their centres, nearest first; equal depths keep the scene's order.
-pub fn sort<T: Real>(splats: &mut [Splat<T>]) {
+/// Orders splats by the depth or the distance of their centres, nearest first; equal ones keep the scene's order.
+pub fn sort<T: Real>(splats: &mut [Splat<T>], by: SortBy) {
     splats.sort_by(|a, b| {
-        let depths = [a, b].map(|splat| splat.footprint.view_centre.z);
-        nearest_first(depths, [a.index, b.index])
+        let keys = [a, b].map(|splat| match by {
+            SortBy::Depth => splat.footprint.view_centre.z,
+            SortBy::Distance => splat.footprint.view_centre.squared(),
+        });
+        nearest_first(keys, [a.index, b.index])
     });
 }
 
@@ -24,6 +28,6 @@ pub fn order<T: Real>(depths: &[T], indices: &[u32]) -> Vec<u32> {
 }
 
 fn nearest_first<T: Real>([a, b]: [T; 2], indices: [u32; 2]) -> Ordering {
-    let depths = a.partial_cmp(&b).expect("depths are finite");
+    let depths = a.partial_cmp(&b).expect("centres are finite");
     depths.then(indices[0].cmp(&indices[1]))
 }

@@ -2,18 +2,15 @@
 
 use bytemuck::allocation::try_zeroed_vec;
 use glam::{Quat, Vec3};
-use std::fmt;
 
+use super::training::Training;
 use rara_base::counted::counted;
 use rara_base::error::{Error, Result};
-use rara_base::setters;
 
 /// The highest degree of spherical harmonics.
 pub(super) const MAX_SH_DEGREE: u32 = 3;
 /// How far the square of a rotation's length may be from one. Rounded ones are within 1e-6; unnormalised ones are not.
 const UNIT: f32 = 1e-3;
-/// The low-passes that can be drawn, square pixels. Without any, splats of less than a pixel would come and go.
-const LOW_PASSES: std::ops::RangeInclusive<f32> = 0.01..=10.0;
 
 /// A set of 3D Gaussians, one array per attribute.
 ///
@@ -41,60 +38,6 @@ pub struct GaussianArrays {
     pub sh: Vec<f32>,
     /// How they were trained.
     pub training: Training,
-}
-
-setters! {
-    /// How Gaussians were trained, in so far as they are drawn by it. It holds for all of a set.
-    ///
-    /// ```
-    /// # use rara_scene as rara;
-    /// let mip_splatting = rara::scene::Training::default().antialiased(true).low_pass(0.1);
-    /// let mut gaussians = rara::scene::Gaussians::default();
-    /// gaussians.set_training(mip_splatting)?;
-    /// # Ok::<(), rara::Error>(())
-    /// ```
-    #[derive(Debug, Clone, Copy, PartialEq)]
-    #[non_exhaustive]
-    pub struct Training {
-        /// See [`Gaussians::is_antialiased`]. Default: false.
-        pub antialiased: bool,
-        /// The low-pass, square pixels, 0.01 to 10: see [`Gaussians::low_pass`]. Default: 0.3.
-        pub low_pass: f32,
-    }
-}
-
-impl Default for Training {
-    fn default() -> Self {
-        Self {
-            antialiased: false,
-            low_pass: 0.3,
-        }
-    }
-}
-
-impl fmt::Display for Training {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let antialiased = if self.antialiased {
-            "antialiased, "
-        } else {
-            ""
-        };
-        write!(f, "{antialiased}with a low-pass of {} px^2", self.low_pass)
-    }
-}
-
-impl Training {
-    fn check(&self) -> std::result::Result<(), String> {
-        match LOW_PASSES.contains(&self.low_pass) {
-            true => Ok(()),
-            false => Err(format!(
-                "the low-pass is {} square pixels: {} to {} can be drawn",
-                self.low_pass,
-                LOW_PASSES.start(),
-                LOW_PASSES.end()
-            )),
-        }
-    }
 }
 
 impl Gaussians {
@@ -225,7 +168,12 @@ impl Gaussians {
     /// Says that they were trained as others were.
     #[doc(hidden)]
     pub fn set_trained_as(&mut self, other: &Gaussians) {
-        self.0.training = other.0.training;
+        self.train(other.0.training);
+    }
+
+    /// Says that they were trained in a way that can be drawn.
+    pub(super) fn train(&mut self, training: Training) {
+        self.0.training = training;
     }
 
     /// Centres, to be moved. Nothing checks what is written here and through the methods below: a number that

@@ -43,6 +43,7 @@ mod report;
 #[cfg(feature = "formats")]
 mod save;
 pub mod settings;
+mod training;
 
 pub use camera::{Camera, Ndc, Projection};
 pub use clip::{Clip, ClipOp, Plane, Quadric, Shape, Surface};
@@ -56,7 +57,7 @@ pub use settings::{Decay, ExactForm, Miss, Mode, Raster, Settings, Show};
 
 pub use bounds::{Bounds, extent_along};
 pub use cross_section::cross_section;
-pub use gaussians::{GaussianArrays, Gaussians, Training, sh_coefficients};
+pub use gaussians::{GaussianArrays, Gaussians, sh_coefficients};
 #[doc(hidden)]
 pub use generate::Random;
 pub use generate::{Kind, generate};
@@ -66,6 +67,7 @@ pub use numbers::Numbers;
 pub use parts::Part;
 pub use predicate::{Attribute, Comparison, Predicate};
 pub use property::Property;
+pub use training::{SortBy, Training};
 #[cfg(feature = "formats")]
 pub use {
     format::Format,

@@ -42,14 +42,10 @@ pub struct SceneFile {
 
 impl SceneFile {
     /// Notes what the file says of how its Gaussians were trained; they are drawn so.
-    pub(super) fn says(&mut self, antialiased: Option<bool>, low_pass: Option<f32>) {
+    pub(super) fn says(&mut self, antialiased: Option<bool>, training: Training) {
         self.antialiased = antialiased;
-        let plain = Training::default().antialiased(antialiased == Some(true));
-        let training = plain.low_pass(low_pass.unwrap_or(plain.low_pass));
-        if let Err(error) = self.gaussians.set_training(training) {
-            self.report.note(format!("drew it as 3DGS does: {error}"));
-            self.gaussians.set_antialiased(plain.antialiased);
-        }
+        let antialiased = antialiased == Some(true);
+        self.gaussians.train(training.antialiased(antialiased));
     }
 }
 

@@ -127,15 +127,15 @@ fn check(path: &Path, gaussians: &Gaussians) -> Result<()> {
 }
 
 /// The lines of a PLY's header by which readers know how Gaussians were trained: others that they are antialiased, this one also
-/// the low-pass.
+/// the rest.
 pub(super) fn training_comments(gaussians: &Gaussians) -> String {
     let training = gaussians.training();
     let mut lines = String::new();
     if training.antialiased {
         lines.push_str("comment SplatRenderMode: mip\n");
     }
-    if training.low_pass != Training::default().low_pass {
-        lines.push_str(&format!("comment LowPass: {}\n", training.low_pass));
+    for (name, value) in training.marks(Training::default()) {
+        lines.push_str(&format!("comment {name}: {value}\n"));
     }
     lines
 }

@@ -1,6 +1,8 @@
 //! The settings of a frame, apart from scene, camera and clip.
 
+use crate::camera::{Camera, Projection};
 use crate::precision::Precision;
+use crate::training::{SortBy, Training};
 use rara_base::setters;
 
 /// How a clip treats the Gaussians that it cuts.
@@ -131,6 +133,9 @@ setters! {
         pub raster: Raster,
         /// Colours, or a debug view.
         pub show: Show,
+        /// The order of the splats; `None` is what all visible layers [ask for](crate::Training::sort_by), or by depth where
+        /// they differ.
+        pub sort_by: Option<SortBy>,
         /// How precise the frame is.
         pub precision: Precision,
     }
@@ -149,12 +154,27 @@ impl Default for Settings {
             sh_degree: None,
             raster: Raster::default(),
             show: Show::default(),
+            sort_by: None,
             precision: Precision::default(),
         }
     }
 }
 
 impl Settings {
+    /// The order in force, for layers that were trained like this.
+    #[doc(hidden)]
+    pub fn order_of(&self, camera: &Camera, visible: impl IntoIterator<Item = Training>) -> SortBy {
+        let asked = || {
+            let mut all = visible.into_iter().map(|training| training.sort_by);
+            let first = all.next()?;
+            all.all(|other| other == first).then_some(first)
+        };
+        match camera.projection {
+            Projection::Perspective => self.sort_by.or_else(asked).unwrap_or_default(),
+            Projection::Orthographic => SortBy::Depth,
+        }
+    }
+
     /// The decay law in force: the one asked for, or the mode's own.
     pub fn decay_law(&self) -> Decay {
         self.decay.unwrap_or(match self.mode {

@@ -132,6 +132,9 @@ fn what_was_trained_antialiased_is_drawn_so() {
     for (words, says) in [
         ("--antialiasing maybe", "expected on, off or auto"),
         ("--antialiasing hair=on", "no layer is called 'hair'"),
+        ("--low-pass much", "expected a number of square pixels"),
+        ("--low-pass 0", "0.01 to 10 can be drawn"),
+        ("--low-pass hair=1", "no layer is called 'hair'"),
     ] {
         refused(&line(&here, &format!("info @/plain.ply {words}")), 2, says);
     }
@@ -145,6 +148,14 @@ fn what_was_trained_antialiased_is_drawn_so() {
         "'smooth' was trained antialiased and 'plain' was not",
     );
     done(line(&here, &format!("{words} --antialiasing on")));
+    refused(
+        &line(
+            &here,
+            &format!("{words} --antialiasing on --low-pass plain=0.1"),
+        ),
+        2,
+        "'smooth' was trained with a low-pass of 0.3 px^2 and 'plain' with a low-pass of 0.1",
+    );
     let words = format!("bake {both} -o @/baked.ply --clip plane:1,0,0,0 --views 0");
     refused(&line(&here, &words), 2, "'smooth' was trained antialiased");
     done(line(
@@ -157,7 +168,7 @@ fn what_was_trained_antialiased_is_drawn_so() {
     }
     let lost = done(line(&here, "convert @/smooth.ply -o @/smooth.glb"));
     assert!(
-        stderr(&lost).contains("glTF cannot say"),
+        stderr(&lost).contains("glTF has no property"),
         "{}",
         stderr(&lost)
     );

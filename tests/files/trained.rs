@@ -4,7 +4,8 @@ use std::path::Path;
 
 use rara::Gaussians;
 use rara::glam::Vec3;
-use rara::scene::{Kind, SceneFile, Training, generate, load, load_from, load_from_with, save};
+use rara::scene::{Kind, SceneFile, generate, load, load_from, load_from_with, save};
+use rara::{SortBy, Training};
 
 use crate::folder::Folder;
 use crate::ply::made::{FIXED, Format, floats, scene_file};
@@ -18,32 +19,28 @@ fn loaded(bytes: Vec<u8>) -> SceneFile {
 fn formats_that_can_say_it_keep_what_is_antialiased() {
     let folder = Folder::new("formats-antialiased");
     let mut scene = generate(Kind::General, 300, 7);
-    for (antialiased, low_pass) in [(true, 0.3), (false, 0.3), (true, 0.1), (false, 0.7)] {
+    for (antialiased, low_pass, sort_by) in [
+        (true, 0.3, SortBy::Depth),
+        (false, 0.3, SortBy::Distance),
+        (true, 0.1, SortBy::Distance),
+        (false, 0.7, SortBy::Depth),
+    ] {
         let training = Training::default()
             .antialiased(antialiased)
-            .low_pass(low_pass);
+            .low_pass(low_pass)
+            .sort_by(sort_by);
         scene.set_training(training).expect("can be drawn");
-        for name in ["a.ply", "a.compressed.ply", "a.spz", "a.sog"] {
+        for name in ["a.ply", "a.compressed.ply", "a.spz", "a.sog", "a.glb"] {
             let path = folder.join(name);
             save(&path, &scene).expect("it is written");
             let read = load(&path, &mut |_, _| ()).expect("it is read");
             let kept = match name {
-                "a.spz" => training.low_pass(0.3),
+                "a.spz" => Training::default().antialiased(antialiased),
                 _ => training,
             };
             assert_eq!(read.gaussians.training(), kept, "{name}");
         }
     }
-    // No property of the glTF extension is for it.
-    let path = folder.join("a.glb");
-    scene.set_antialiased(true);
-    save(&path, &scene).expect("it is written");
-    assert!(
-        !load(&path, &mut |_, _| ())
-            .expect("it is read")
-            .gaussians
-            .is_antialiased()
-    );
 }
 
 #[test]

@@ -5,7 +5,6 @@ mod common;
 
 mod accuracy;
 mod agreement;
-mod antialiased;
 mod aov;
 mod bake;
 mod camera_planes;
@@ -28,3 +27,4 @@ mod shapes;
 mod shortlists;
 mod slices;
 mod stress;
+mod trained;

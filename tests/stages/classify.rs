@@ -1,7 +1,7 @@
 //! Stages `blocks` and `classify`: which Gaussians are in view, and what the clip does to them.
 
 use glam::{DMat4, Quat, Vec3};
-use rara::scene::Training;
+use rara::Training;
 use rara::{Camera, Clip, ClipOp, Mode, Raster, Settings};
 use rara_base::limits::BLOCK_SIZE;
 use rara_reference::{Side, ViewTransform, classify};

@@ -7,7 +7,8 @@ use crate::boundary::{RARA_ERROR_INVALID, RARA_OK};
 use crate::gaussians::rara_gaussians_destroy;
 use crate::handles::alive;
 use crate::tests::assert_fails;
-use rara::scene::{Kind, Training, generate};
+use rara::Training;
+use rara::scene::{Kind, generate};
 
 /// The result, and the Gaussians that it has given.
 fn made(arrays: &RaraGaussianArrays) -> (RaraResult, Option<Gaussians>) {

@@ -14,7 +14,7 @@ pub(super) fn count(scene: &Gaussians, camera: &Camera, settings: &Settings) -> 
     let drawn = compact::compact(&sides);
     let project = |&index: &u32| project::project(scene, index as usize, &view, settings);
     let mut splats: Vec<_> = drawn.iter().filter_map(project).collect();
-    sort::sort(&mut splats);
+    sort::sort(&mut splats, settings.order_of(camera, [scene.training()]));
 
     let [width, height] = view.size;
     let mut members = vec![Vec::new(); height.div_ceil(BAND) as usize];

@@ -9,6 +9,7 @@ use ply_rs::parser::{Parser, Reader};
 use ply_rs::ply::{DefaultElement, ElementDef, Encoding, PropertyType, ScalarType};
 
 use super::trained::{self, TrainerKind};
+use crate::Training;
 use rara_base::error::shortened;
 
 /// Headers of real files are below 5 kB; this leaves room for long comments. No more is read before the header is known.
@@ -33,8 +34,8 @@ pub(super) struct PlyHeader {
     pub(super) line_end: u8,
     /// What the comments say of the Gaussians.
     pub(super) kind: Option<TrainerKind>,
-    /// The low-pass that they say, or that who wrote them trains with.
-    pub(super) low_pass: Option<f32>,
+    /// How they were trained by that and by who wrote the file, and what there is to say of it.
+    pub(super) training: (Training, Vec<String>),
 }
 
 impl PlyHeader {
@@ -71,7 +72,7 @@ impl PlyHeader {
             blank: all - lines.len(),
             line_end,
             kind: TrainerKind::from_comments(&lines),
-            low_pass: trained::low_pass(&lines),
+            training: trained::training(&lines),
         })
     }
 }

@@ -19,6 +19,7 @@ use super::assemble::Assembler;
 use super::failure::Failure;
 use super::load::{Input, Progress, SceneFile};
 use super::{Format, LoadReport, Property};
+use crate::Training;
 use rara_base::counted::counted;
 use rara_base::error::{Error, Result};
 
@@ -41,6 +42,7 @@ pub(super) fn read(
     let header = PlyHeader::parse(&start).map_err(format)?;
     drop(start);
 
+    let mut training = header.training.0;
     let mut antialiased = header.kind.map(|kind| kind == TrainerKind::Antialiased);
     let left = progress.total().saturating_sub(header.size);
     if packed::is(&header) {
@@ -58,7 +60,7 @@ pub(super) fn read(
         let (mut loaded, properties) = made.finish();
         loaded.format = Format::CompressedPly;
         note(&mut loaded.report, &header, false);
-        loaded.says(antialiased, header.low_pass);
+        loaded.says(antialiased, training);
         return Ok((loaded, properties));
     }
     let layout = Layout::from_header(&header, asked).map_err(format)?;
@@ -87,14 +89,15 @@ pub(super) fn read(
         let note = "took the colours from red, green and blue, since there is no f_dc_0";
         loaded.report.note(note.into());
     }
-    let mut low_pass = header.low_pass;
     if let Some(at) = properties
         .iter()
         .position(|property| property.name == trained::FILTER)
     {
         let unusable = trained::smooth(&mut loaded.gaussians, &properties[at].values);
         antialiased = Some(true);
-        low_pass = low_pass.or(Some(trained::LOW_PASS));
+        if training.low_pass == Training::default().low_pass {
+            training.low_pass = trained::LOW_PASS;
+        }
         loaded.report.note(format!(
             "smoothed the Gaussians by {}, and draws them antialiased, as Mip-Splatting does",
             trained::FILTER
@@ -109,7 +112,7 @@ pub(super) fn read(
             properties.remove(at);
         }
     }
-    loaded.says(antialiased, low_pass);
+    loaded.says(antialiased, training);
     Ok((loaded, properties))
 }
 
@@ -117,6 +120,9 @@ pub(super) fn read(
 fn note(report: &mut LoadReport, header: &PlyHeader, is_flat: bool) {
     if is_flat || header.kind == Some(TrainerKind::Discs) {
         report.note(trained::DISCS.into());
+    }
+    for mark in &header.training.1 {
+        report.note(mark.clone());
     }
     if header.blank > 0 {
         report.note(format!(

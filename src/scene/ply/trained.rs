@@ -3,7 +3,7 @@
 
 use ply_rs::ply::{ElementDef, PropertyType};
 
-use crate::{Gaussians, SH_0};
+use crate::{Gaussians, SH_0, Training};
 
 /// The property in which Mip-Splatting and its descendants leave a deviation that each Gaussian has in all directions beside
 /// its scales: the finest detail that the training pictures show of it.
@@ -69,21 +69,24 @@ fn comments(lines: &[String]) -> impl DoubleEndedIterator<Item = String> {
     })
 }
 
-/// The low-pass by the last comment `LowPass: PX2`, as this writes it, or else that of Brush, which trains antialiased with the
-/// one of Mip-Splatting; others do so with that of 3DGS.
-pub(super) fn low_pass(lines: &[String]) -> Option<f32> {
-    let said = comments(lines).rev().find_map(|comment| {
-        let (name, value) = comment.split_once(':')?;
-        (name.trim() == "lowpass").then(|| value.trim().parse().ok())?
+/// How Gaussians were trained by a header, and what is to say of it. Brush trains antialiased with the low-pass of Mip-Splatting,
+/// others with that of 3DGS; this project's own [marks](Training::marks) come before that.
+pub(super) fn training(lines: &[String]) -> (Training, Vec<String>) {
+    let antialiased = TrainerKind::from_comments(lines) == Some(TrainerKind::Antialiased);
+    let mut training = Training::default().antialiased(antialiased);
+    let is_of_brush = comments(lines).any(|comment| {
+        let mut words = comment.split(|sign: char| !sign.is_alphanumeric());
+        words.any(|word| word == "brush")
     });
-    said.or_else(|| {
-        let is_of_brush = comments(lines).any(|comment| {
-            let mut words = comment.split(|sign: char| !sign.is_alphanumeric());
-            words.any(|word| word == "brush")
-        });
-        let kind = TrainerKind::from_comments(lines);
-        (is_of_brush && kind == Some(TrainerKind::Antialiased)).then_some(LOW_PASS)
-    })
+    if antialiased && is_of_brush {
+        training.low_pass = LOW_PASS;
+    }
+    let marks = comments(lines).filter_map(|comment| {
+        let (name, value) = comment.split_once(':')?;
+        training.mark(name.trim(), value.trim()).err()
+    });
+    let unusable = marks.collect();
+    (training, unusable)
 }
 
 /// Refuses Gaussians that are drawn in another way than those of 3DGS.
@@ -135,6 +138,7 @@ mod tests {
     use glam::{Quat, Vec3};
 
     use super::*;
+    use crate::SortBy;
 
     #[test]
     fn the_last_comment_that_says_a_kind_counts() {
@@ -172,29 +176,29 @@ mod tests {
     }
 
     #[test]
-    fn the_low_pass_is_what_a_comment_says_or_that_of_who_wrote_it() {
+    fn the_low_pass_is_what_a_mark_says_or_that_of_who_wrote_the_file() {
         let found =
-            |lines: &[&str]| low_pass(&lines.iter().map(|l| l.to_string()).collect::<Vec<_>>());
+            |lines: &[&str]| training(&lines.iter().map(|l| l.to_string()).collect::<Vec<_>>());
         let (brush, mip) = (
             "comment Exported from Brush",
             "comment SplatRenderMode: mip",
         );
         for (lines, expected) in [
-            (&[brush, mip][..], Some(0.1)),
-            (&[mip, "obj_info made by brush-app 0.3"], Some(0.1)),
-            (&[brush, "comment SplatRenderMode: default"], None),
-            (&[brush], None),
-            (&[mip], None),
-            (&[mip, "comment a brushed scene"], None),
-            (&[brush, mip, "comment LowPass: 0.25"], Some(0.25)),
-            (&["comment lowpass : 0.2"], Some(0.2)),
-            (
-                &["comment LowPass: 0.2", "comment LowPass: much"],
-                Some(0.2),
-            ),
+            (&[brush, mip][..], 0.1),
+            (&[mip, "obj_info made by brush-app 0.3"], 0.1),
+            (&[brush, "comment SplatRenderMode: default"], 0.3),
+            (&[brush], 0.3),
+            (&[mip], 0.3),
+            (&[mip, "comment a brushed scene"], 0.3),
+            (&[brush, mip, "comment lowPass: 0.25"], 0.25),
+            (&["comment LOWPASS : 0.2"], 0.2),
         ] {
-            assert_eq!(found(lines), expected, "{lines:?}");
+            let (found, unusable) = found(lines);
+            assert_eq!((found.low_pass, unusable), (expected, vec![]), "{lines:?}");
         }
+        let (kept, unusable) = found(&["comment lowPass: much", "comment sortBy: distance"]);
+        assert_eq!(kept, Training::default().sort_by(SortBy::Distance));
+        assert!(unusable[0].contains("much"), "{unusable:?}");
     }
 
     #[test]

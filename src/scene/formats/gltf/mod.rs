@@ -15,7 +15,7 @@ use self::accessor::Accessor;
 use self::buffers::Buffers;
 use self::nodes::Transform;
 use super::super::assemble::{ColumnForm, OPACITY, ROTATION, SCALES, SH};
-use super::super::{SH_0, sh_coefficients};
+use super::super::{SH_0, SortBy, sh_coefficients};
 use super::bytes::Bytes;
 use super::{Failure, FormatOutput, json, room, spz};
 use crate::placement::Placement;
@@ -24,6 +24,9 @@ use rara_base::error::shortened;
 
 /// The extension's name, which attributes begin with.
 pub(super) const EXTENSION: &str = "KHR_gaussian_splatting";
+/// Where a primitive's extras have this project's marks of how its Gaussians were trained, and the one that only glTF lacks.
+pub(super) const MARKS: &str = "rara";
+pub(super) const ANTIALIASED: &str = "antialiased";
 /// What names of its compression begin with; drafts have a number behind.
 const SPZ: &str = "KHR_gaussian_splatting_compression_spz";
 
@@ -96,6 +99,7 @@ pub(super) fn read_document(
         }
         for &(primitive, extension) in &mesh.splats {
             let mut made = read_primitive(document, &mut buffers, primitive, extension)?;
+            set_training(&mut made, primitive);
             match turned.of_inner(&transform)? {
                 Transform::Similar(placement) => made.place(&placement),
                 Transform::Other(affine) => made.transform(&affine),
@@ -250,6 +254,12 @@ fn read_primitive(
             "is drawn as perspective",
         ),
         (
+            "sortingMethod",
+            "cameraDistance",
+            "the order",
+            "is drawn by distance",
+        ),
+        (
             "colorSpace",
             "srgb_rec709_display",
             "colours of the space",
@@ -372,6 +382,22 @@ fn is_read(name: &str, degree: u32) -> bool {
         Some(own) => (0..=degree).any(|band| own.starts_with(&format!("SH_DEGREE_{band}_"))),
         None => ["POSITION", "COLOR_0"].contains(&name),
     }
+}
+
+/// Says how the Gaussians of a primitive were trained. The extension knows one order, by distance; for the rest, and for what is
+/// trained by depth, this project's own files have marks.
+fn set_training(made: &mut FormatOutput, primitive: &Value) {
+    let mut training = made.gaussians.training().sort_by(SortBy::Distance);
+    let extras = primitive.get("extras");
+    let marks = extras.and_then(|extras| extras.get(MARKS)?.as_object());
+    for (name, value) in marks.into_iter().flatten() {
+        if name == ANTIALIASED {
+            training.antialiased = value.as_bool() == Some(true);
+        } else if let Err(note) = training.mark(name, value.as_str().unwrap_or_default()) {
+            made.report.note(note);
+        }
+    }
+    made.gaussians.train(training);
 }
 
 /// The accessor of an attribute.

@@ -98,9 +98,6 @@ impl Harmonics<'_> {
     }
 }
 
-/// The name of the low-pass, which only this project writes.
-pub(in crate::formats) const LOW_PASS: &str = "lowPass";
-
 /// A whole `meta.json`.
 pub(super) struct Meta<'a> {
     /// Whether opacities are logits, as version 1 has them.
@@ -160,8 +157,6 @@ impl<'a> Meta<'a> {
                     .into(),
             );
         }
-        let low_pass = document.get(LOW_PASS).and_then(Value::as_f64);
-        let low_pass = low_pass.map_or(Training::default().low_pass, |value| value as f32);
         let antialias = document.get("antialias").and_then(Value::as_bool);
         let harmonics = match document.get("shN").filter(|part| !part.is_null()) {
             None => None,
@@ -201,12 +196,15 @@ impl<'a> Meta<'a> {
         let [scales_file] = files(scales, "scales")?;
         let [quats_file] = files(quats, "quats")?;
         let [sh0_file] = files(sh0, "sh0")?;
+        let is_antialiased = antialias == Some(true) || model == Some("antialiased");
+        let mut training = Training::default().antialiased(is_antialiased);
+        for (name, value) in document.as_object().into_iter().flatten() {
+            training.mark(name, value.as_str().unwrap_or_default())?;
+        }
         Ok(Self {
             is_first: is_first && sh0.get("codebook").is_none(),
             count,
-            training: Training::default()
-                .antialiased(antialias == Some(true) || model == Some("antialiased"))
-                .low_pass(low_pass),
+            training,
             bounds: ends(means, "means", 3)?,
             means: [means_low, means_high],
             scales: (scales_file, Range::from_json(scales, "scales", 3)?),

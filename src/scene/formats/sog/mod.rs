@@ -10,7 +10,6 @@ use std::path::Path;
 use serde_json::Value;
 
 pub(super) use self::archive::Archive;
-pub(super) use self::meta::LOW_PASS;
 use self::meta::{Meta, Range};
 use self::picture::Picture;
 use super::super::assemble::{ColumnForm, OPACITY, ROTATION, SCALES, SH, unit_quaternion};
@@ -166,8 +165,6 @@ fn read(
         Ok(())
     })?;
     let mut made = FormatOutput::from(made);
-    made.gaussians
-        .set_training(meta.training)
-        .map_err(|error| Failure::Format(format!("meta.json: {error}")))?;
+    made.gaussians.train(meta.training);
     Ok(made)
 }

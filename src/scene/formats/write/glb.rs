@@ -3,8 +3,8 @@
 use glam::DVec3;
 use serde_json::{Value, json};
 
-use super::super::super::Gaussians;
-use super::super::gltf::{EXTENSION, turn};
+use super::super::super::{Gaussians, SortBy, Training};
+use super::super::gltf::{ANTIALIASED, EXTENSION, MARKS, turn};
 use super::corners;
 use crate::placement::Placement;
 use rara_base::error::{Error, Result};
@@ -49,7 +49,16 @@ pub(super) fn encode(gaussians: &Gaussians) -> Result<Vec<u8>> {
             number += 1;
         }
     }
-    let document = json!({
+    let training = gaussians.training();
+    let usual = Training::default().sort_by(SortBy::Distance);
+    let mut marks: serde_json::Map<String, Value> = training
+        .marks(usual)
+        .map(|(name, value)| (name.into(), json!(value)))
+        .collect();
+    if training.antialiased {
+        marks.insert(ANTIALIASED.into(), json!(true));
+    }
+    let mut document = json!({
         "asset": { "version": "2.0", "generator": concat!("rara ", env!("CARGO_PKG_VERSION")) },
         "extensionsUsed": [EXTENSION],
         "scene": 0,
@@ -69,6 +78,9 @@ pub(super) fn encode(gaussians: &Gaussians) -> Result<Vec<u8>> {
         "bufferViews": parts.views,
         "accessors": parts.accessors,
     });
+    if !marks.is_empty() {
+        document["meshes"][0]["primitives"][0]["extras"] = json!({ MARKS: marks });
+    }
     let mut text = document.to_string().into_bytes();
     text.resize(text.len().next_multiple_of(4), b' ');
     let total = u32::try_from(28 + text.len() + parts.bytes.len());

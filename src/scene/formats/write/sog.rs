@@ -9,7 +9,7 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipWriter};
 
 use super::super::super::{Gaussians, Training};
-use super::super::sog::{CENTROIDS, LARGEST, LOW_PASS};
+use super::super::sog::{CENTROIDS, LARGEST};
 use super::codebook::{Codebook, sets};
 use super::{ANY, Ranges, along_a_curve, byte, smallest_three};
 use rara_base::error::{Error, Result};
@@ -109,8 +109,8 @@ pub(super) fn encode(gaussians: &Gaussians) -> Result<Vec<u8>> {
         meta["antialias"] = json!(true);
         meta["model"] = json!("antialiased");
     }
-    if gaussians.low_pass() != Training::default().low_pass {
-        meta[LOW_PASS] = json!(gaussians.low_pass());
+    for (name, value) in gaussians.training().marks(Training::default()) {
+        meta[name] = json!(value);
     }
     let coefficients = gaussians.sh_coefficients() - 1;
     if coefficients > 0 && !order.is_empty() {

@@ -1,12 +1,12 @@
-//! Gaussians that were trained antialiased, whose opacities make up for the low-pass, or with another low-pass than that of
-//! 3DGS: against the reference, whole and cut.
+//! Gaussians that were trained antialiased, whose opacities make up for the low-pass, with another low-pass than that of 3DGS, or
+//! in another order: against the reference, whole and cut.
 
 use crate::common;
 use rara::clip::Expression;
-use rara::scene::{self, Kind, Training};
+use rara::scene::{self, Kind};
 use rara::{
     Camera, Clip, ClipOp, Gaussians, Headless, Layer, LayerState, Mode, Picture, Raster, Scene,
-    Settings,
+    Settings, SortBy, Training,
 };
 
 const SIZE: (u32, u32) = (64, 48);
@@ -166,5 +166,56 @@ fn moved_clips_leave_the_same_antialiased_pictures() {
             let whole = drawn(&mut headless, &camera, clip, &settings);
             assert!(kept.pixels == whole.pixels, "{raster:?} {clip:?}");
         }
+    }
+}
+
+/// Splats in the order of their distance from the eye, by the setting and by what all layers ask for.
+#[test]
+fn splats_in_the_order_of_distance_are_the_references() {
+    let mut scene = small_and_large();
+    let mut headless = common::headless();
+    headless.load(&scene).expect("uploads");
+    let camera = common::views(&scene, 3, SIZE)[1];
+    let camera = camera.fx(0.4 * camera.fx).fy(0.4 * camera.fy); // wide: the orders differ most at the edges
+    let clip = common::clip(&scene, 1, ClipOp::And);
+    let by_distance = Settings::default().sort_by(Some(SortBy::Distance));
+    for raster in common::rasters(headless.device()) {
+        let settings = by_distance.raster(raster);
+        for (mode, clip) in [(Mode::None, &Clip::default()), (Mode::Exact, &clip)] {
+            let settings = settings.mode(mode);
+            let name = format!("by distance by {raster:?}");
+            common::check(&mut headless, &name, &scene, &camera, clip, &settings);
+        }
+    }
+    let usual = Settings::default();
+    let depth = drawn(&mut headless, &camera, &clip, &usual);
+    let distance = drawn(&mut headless, &camera, &clip, &by_distance);
+    assert!(
+        depth.pixels != distance.pixels,
+        "the orders do not differ here"
+    );
+    // Parallel lines of sight have no eye.
+    let flat = common::flattened(&camera, &scene);
+    let [one, other] = [&usual, &by_distance].map(|by| drawn(&mut headless, &flat, &clip, by));
+    assert!(one.pixels == other.pixels);
+
+    let plain = scene.clone();
+    let training = scene.training().sort_by(SortBy::Distance);
+    scene.set_training(training).expect("can be drawn");
+    headless.load(&scene).expect("uploads");
+    let asked = drawn(&mut headless, &camera, &clip, &usual);
+    assert!(asked.pixels == distance.pixels, "the scene asks for it");
+    let by_depth = usual.sort_by(Some(SortBy::Depth));
+    let other = drawn(&mut headless, &camera, &clip, &by_depth);
+    assert!(other.pixels == depth.pixels, "the setting comes first");
+    for (visible, expected) in [(true, SortBy::Depth), (false, SortBy::Distance)] {
+        let hidden = Layer::new("plain", &plain).with(LayerState::default().visible(visible));
+        headless
+            .load(Scene::from_iter([Layer::new("asks", &scene), hidden]))
+            .expect("uploads");
+        let found = drawn(&mut headless, &camera, &clip, &usual);
+        let expected = usual.sort_by(Some(expected));
+        let expected = drawn(&mut headless, &camera, &clip, &expected);
+        assert!(found.pixels == expected.pixels, "visible: {visible}");
     }
 }

@@ -1,14 +1,15 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Reads the tiles' picture, which is blended onto what the host has drawn: as it is, or for a host of linear light turned
-// into that once, after the splats were blended as stored.
+// Reads the tiles' picture, which is blended onto what the host has drawn: as it is, or where one of both is linear light and
+// the other is not turned into the host's once, after the splats were blended.
 struct Params {
     vec2 origin; // where the viewport begins in the attachment, px
 };
 #define PARAMS Params
 #include "frame.glsl"
 
-layout(constant_id = 0) const bool LINEAR = false;
+layout(constant_id = 0) const bool LINEAR = false; // what was blended as stored becomes linear light
+layout(constant_id = 1) const bool STORED = false; // linear light becomes what is stored
 
 BUFFER(readonly, 1, vec4, picture)
 
@@ -19,6 +20,12 @@ layout(location = 0) out vec4 colour;
 vec3 linear_light(vec3 stored) {
     stored = max(stored, 0.0);
     return mix(pow((stored + 0.055) / 1.055, vec3(2.4)), stored / 12.92, lessThanEqual(stored, vec3(0.04045)));
+}
+
+// The inverse.
+vec3 stored_colour(vec3 light) {
+    light = max(light, 0.0);
+    return mix(1.055 * pow(light, vec3(1.0 / 2.4)) - 0.055, light * 12.92, lessThanEqual(light, vec3(0.0031308)));
 }
 
 void main() {
@@ -35,5 +42,8 @@ void main() {
     // A premultiplied colour is the pixel's own times its alpha.
     if (LINEAR && colour.a > 0.0) {
         colour.rgb = colour.a * linear_light(colour.rgb / colour.a);
+    }
+    if (STORED && colour.a > 0.0) {
+        colour.rgb = colour.a * stored_colour(colour.rgb / colour.a);
     }
 }

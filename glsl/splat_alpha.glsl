@@ -9,7 +9,7 @@ float splat_alpha(vec4 centre_conic, vec4 conic_cut, float slope, vec3 curvature
     vec2 delta = gl_FragCoord.xy - centre_conic.xy;
     float u = centre_conic.z * delta.x;
     float v = centre_conic.w * delta.x + conic_cut.x * delta.y;
-    float alpha = min(ALPHA_MAX, conic_cut.y * exp(-0.5 * (u * u + v * v)));
+    float alpha = min(push.params.alpha_max, conic_cut.y * exp(-0.5 * (u * u + v * v)));
     // Thresholds are on the unclipped alpha, so that thin layers do not vanish when they are cut.
     if (!(alpha >= ALPHA_MIN)) {
         return 0.0;

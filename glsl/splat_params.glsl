@@ -6,6 +6,7 @@ struct Params {
     float depth_scale;
     float sigma; // the ellipsoid that mode `rara` traces, standard deviations
     uint cut_stride; // vec4s of a cutoff record
+    float alpha_max; // the most that a splat covers of a pixel
 #ifdef EXPECTED_DEPTH
     float unit; // what depths are multiplied by
 #endif

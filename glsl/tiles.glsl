@@ -95,7 +95,7 @@ void blend(Seen splat, Record record, vec2 delta, bool may_be_cut) {
     for (uint row = 0u; row < ROWS; row++) {
         float y = pixel_centre.y + float(row) - splat.centre_conic.y;
         float w = v + splat.conic_opacity.x * y;
-        float a = min(ALPHA_MAX, splat.conic_opacity.y * exp(-0.5 * (u * u + w * w)));
+        float a = min(FRAME.tiles.alpha_max, splat.conic_opacity.y * exp(-0.5 * (u * u + w * w)));
         alpha[row] = a >= ALPHA_MIN ? a : 0.0;
     }
     // Where the sort has compared whole depths, all that follows is hidden too.

@@ -44,7 +44,8 @@ struct TilesData {
     uint span_runs; // invocations that find the splats' spans of tiles; 0 for the bin by macro-tiles
     uint row_parts; // parts of the spans of a row of tiles
     float transmittance_min; // below it a tile's pixel is saturated: what lies behind changes it by less
-    uint pad[3]; // unused
+    float alpha_max; // the most that a splat covers of a pixel
+    uint pad[2]; // unused
 };
 
 // How much there is room for, and what happens where that is too little. No pixel depends on it.

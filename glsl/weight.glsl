@@ -123,12 +123,13 @@ float cut_weight(uint cut, vec2 delta, vec2 uv, vec2 pixel_centre) {
 }
 
 // The paper scales alpha (eq. 12). The default for `exact` scales optical depth, -ln(1 - alpha): then complementary
-// halves rebuild the whole. A weight of one leaves alpha untouched to the bit.
+// halves rebuild the whole. A weight of one leaves alpha untouched to the bit. What is opaque has a finite depth, whose
+// logarithm exists.
 float decayed(float alpha, float weight) {
     if (weight >= 1.0) {
         return alpha;
     }
-    return DECAY == DECAY_LINEAR ? alpha * weight : 1.0 - exp2(weight * log2(1.0 - alpha));
+    return DECAY == DECAY_LINEAR ? alpha * weight : 1.0 - exp2(weight * log2(max(1.0 - alpha, TRANSMITTANCE_OPAQUE)));
 }
 
 #endif

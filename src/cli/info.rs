@@ -87,6 +87,10 @@ struct LayerFacts {
     low_pass: f32,
     /// The order that it asks for: depth or distance.
     sort_by: String,
+    /// The most that one of its splats covers of a pixel.
+    alpha_max: f32,
+    /// Whether its colours are linear light.
+    linear: bool,
     clipped: bool,
     /// What else there is to say of it, where it is one of several.
     #[serde(rename = "statistics", skip_serializing_if = "Option::is_none")]
@@ -106,6 +110,8 @@ impl LayerFacts {
             antialiased: layer.gaussians.is_antialiased(),
             low_pass: layer.gaussians.low_pass(),
             sort_by: values::name(layer.gaussians.training().sort_by),
+            alpha_max: layer.gaussians.training().alpha_max,
+            linear: layer.gaussians.training().linear,
             clipped: layer.clip.is_some(),
             facts: None,
         }
@@ -264,6 +270,11 @@ fn table(document: &InfoJson) -> Vec<String> {
         lines.push(format!("antialiased    {trained}"));
         lines.push(format!("low-pass       {} px^2", layer.low_pass));
         lines.push(format!("sorted by      {}", layer.sort_by));
+        let colours = if layer.linear { "linear light" } else { "sRGB" };
+        lines.push(format!(
+            "colours        {colours}, alpha up to {}",
+            layer.alpha_max
+        ));
     }
     lines.push(format!("SH degree      {}", document.sh_degree));
     lines.push(format!("repaired       {}", grouped(document.repaired)));

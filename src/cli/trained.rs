@@ -7,7 +7,7 @@ use rara::scene::Format;
 use rara::{SortBy, Training};
 
 use super::failure::Failure;
-use super::scene_layers::SceneLayers;
+use super::scene_layers::{LoadedLayer, SceneLayers};
 use super::training;
 use super::values::name;
 
@@ -149,12 +149,22 @@ pub(super) fn check_alike(loaded: &SceneLayers) -> Result<(), Failure> {
     let Some(first) = shown.next() else {
         return Ok(());
     };
-    let training = first.gaussians.training();
-    // The order of what is one file is that of the first.
-    let other =
-        shown.find(|layer| layer.gaussians.training().sort_by(training.sort_by) != training);
+    // The order of what is one file is that of the first, and the most that a splat covers comes of the format.
+    let of = |layer: &LoadedLayer| {
+        let training = layer.gaussians.training();
+        training.sort_by(SortBy::default()).alpha_max(1.0)
+    };
+    let own = of(first);
+    let other = shown.find(|layer| of(layer) != own);
     let Some(other) = other else { return Ok(()) };
-    let (own, others) = (training, other.gaussians.training());
+    let others = of(other);
+    if own.linear != others.linear {
+        return Err(Failure::Usage(format!(
+            "the colours of '{}' and '{}' are not both linear light, and a file of both can say only one of it: write them to \
+             a file each",
+            first.name, other.name
+        )));
+    }
     let (how, flag) = match (own.antialiased, others.antialiased) {
         (true, false) => (
             ["antialiased", "was not"].map(String::from),
@@ -178,6 +188,12 @@ pub(super) fn check_alike(loaded: &SceneLayers) -> Result<(), Failure> {
 
 /// What to say where a file of this format says less of how its Gaussians were trained, or says it to rara alone.
 pub(super) fn lost(format: Format, training: Training) -> Option<String> {
+    if training.linear && format != Format::Gltf {
+        return Some(format!(
+            "{format} cannot say that the colours are linear light, and is drawn as if displays stored them so, but for a .ply \
+             by rara; write a .glb"
+        ));
+    }
     let usual = match format {
         Format::Gltf => Training::default().sort_by(SortBy::Distance),
         Format::Spz => Training::default().antialiased(training.antialiased),

@@ -14,11 +14,13 @@ use crate::types::FrameCounts;
 use rara_gpu::Drawer;
 use rara_scene::settings::Show;
 
-/// The draw of the tiles' picture, in linear light where a target asks for it and colours are shown.
+/// The draw of the tiles' picture, in the light of the target where that is another and colours are shown.
 pub(crate) fn draw(plan: &Plan, targets: Targets) -> Draw<composite::Program> {
     let shows_colours = matches!(plan.way.show, Show::Colour | Show::Weight);
+    let converts = shows_colours && targets.convert(plan.way.show);
     let constants = composite::Constants {
-        linear: targets.linear && shows_colours,
+        linear: converts && targets.linear,
+        stored: converts && !targets.linear,
     };
     let shaders = [&composite::VERT, &composite::FRAG];
     Draw::new(shaders, constants, targets.colour, false)

@@ -102,6 +102,7 @@ pub(crate) fn record_draw(
         depth_scale,
         sigma: plan.data.region.sigma,
         cut_stride: plan.data.weight.cut_stride,
+        alpha_max: plan.data.tiles.alpha_max,
         unit: unit as f32,
     };
     let (buffers, args) = (

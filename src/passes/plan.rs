@@ -120,6 +120,9 @@ impl Plan {
         // The laws take Phi; the target and the scene have formats of their own.
         let (_target, _sh, _phi, key_bits, beam_switch, transmittance_min) =
             settings.precision.fields();
+        let filled = scene.layers.iter().filter(|layer| layer.gaussians() > 0);
+        let alphas = filled.map(|layer| layer.training().alpha_max);
+        let alpha_max = alphas.fold(1.0, f32::min);
         let weight = weight_data(&scene, &region, &layers, settings, beam_switch)?;
         let boxes = layers::boxes(scene.layers, camera);
         let trained = scene.layers.iter().filter(|layer| layer.is_visible());
@@ -178,7 +181,7 @@ impl Plan {
                     by_distance: (order == SortBy::Distance).into(),
                     pad: [0; 3],
                 },
-                tiles: tiles_data(size, scene.span_runs, transmittance_min)?,
+                tiles: tiles_data(size, scene.span_runs, [transmittance_min, alpha_max])?,
                 room: RoomData {
                     pair_capacity: scene.pair_capacity,
                     redrawn: scene.redrawn.into(),
@@ -197,10 +200,11 @@ impl Plan {
         let TilesData {
             span_runs,
             transmittance_min,
+            alpha_max,
             ..
         } = self.data.tiles;
         let size = vk::Extent2D { width, height };
-        plan.data.tiles = tiles_data(size, span_runs, transmittance_min)?;
+        plan.data.tiles = tiles_data(size, span_runs, [transmittance_min, alpha_max])?;
         for view in &mut plan.data.views {
             view.size[..2].copy_from_slice(&[width as f32, height as f32]);
         }
@@ -367,7 +371,11 @@ fn weight_data(
 }
 
 /// The tiles of a picture.
-fn tiles_data(size: vk::Extent2D, span_runs: u32, saturated: f32) -> Result<TilesData> {
+fn tiles_data(
+    size: vk::Extent2D,
+    span_runs: u32,
+    [saturated, alpha_max]: [f32; 2],
+) -> Result<TilesData> {
     if !(0.0..1.0).contains(&saturated) {
         return Err(Error::Invalid(format!(
             "a least transmittance of {saturated} is not one; give zero or more, below 1"
@@ -385,7 +393,8 @@ fn tiles_data(size: vk::Extent2D, span_runs: u32, saturated: f32) -> Result<Tile
             .div_ceil(rows)
             .next_multiple_of(limits::ROW_GROUP_SIZE),
         transmittance_min: saturated,
-        pad: [0; 3],
+        alpha_max,
+        pad: [0; 2],
     })
 }
 

@@ -76,6 +76,13 @@ impl SceneBuffers {
         Ok(buffers)
     }
 
+    /// True where its colours are linear light.
+    pub(crate) fn is_linear(&self) -> bool {
+        self.layers
+            .iter()
+            .any(|layer| layer.gaussians() > 0 && layer.training().linear)
+    }
+
     /// Its layers, at least one, in the order in which they were given.
     pub fn layers(&self) -> &[SceneLayer] {
         &self.layers

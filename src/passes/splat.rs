@@ -65,6 +65,7 @@ pub(crate) fn record(
         depth_scale,
         sigma: plan.data.region.sigma,
         cut_stride: plan.data.weight.cut_stride,
+        alpha_max: plan.data.tiles.alpha_max,
     };
     let at = match plan.way.raster {
         Raster::Mesh => offset_of!(FrameCounts, mesh_groups),

@@ -4,6 +4,7 @@ use crate::passes::plan::Plan;
 use crate::passes::recording::Recording;
 use crate::passes::storage::Storage;
 use rara_gpu::Attachments;
+use rara_scene::settings::Show;
 
 /// A step of the frame that is computed before the draw.
 #[derive(Debug)]
@@ -45,4 +46,13 @@ pub(crate) struct Targets {
     pub(crate) expected_depth: Option<Attachments>,
     /// True when the host's colours are linear light.
     pub(crate) linear: bool,
+    /// True when those of the splats are.
+    pub(crate) draws_linear: bool,
+}
+
+impl Targets {
+    /// True when what splats make is not what the host has, so that their picture is converted once it is whole.
+    pub(crate) fn convert(&self, show: Show) -> bool {
+        self.linear != (self.draws_linear && show == Show::Colour)
+    }
 }

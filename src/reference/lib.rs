@@ -40,8 +40,8 @@ use rara_base::stats::Counts;
 use rara_scene::Scene;
 use rara_scene::camera::Camera;
 use rara_scene::clip::Clip;
-use rara_scene::picture::Picture;
-use rara_scene::settings::Settings;
+use rara_scene::picture::{Picture, linear_light};
+use rara_scene::settings::{Settings, Show};
 
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReferenceFrame {
@@ -61,9 +61,21 @@ pub fn render<'a, T: Real>(
     let layers = layer::layers(&scene, camera, clip);
     // Find each Gaussian's side.
     let sides: Vec<_> = layers.iter().map(|layer| sides(layer, settings)).collect();
-    let splats = in_order::<T>(&layers, &sides, camera, settings);
-    // Blend them.
-    let picture = splat::splat(&splats, &ViewTransform::new(camera), settings);
+    let mut splats = in_order::<T>(&layers, &sides, camera, settings);
+    let alpha_max = T::of(f64::from(scene.alpha_max()));
+    splats
+        .iter_mut()
+        .for_each(|splat| splat.alpha_max = alpha_max);
+    // Blend them, in linear light where their colours are that.
+    let is_linear = scene.is_linear() && settings.show == Show::Colour;
+    let mut settings = *settings;
+    if is_linear {
+        settings.background = settings.background.map(|rgb| rgb.map(linear_light));
+    }
+    let mut picture = splat::splat(&splats, &ViewTransform::new(camera), &settings);
+    if is_linear {
+        picture.store_light();
+    }
     ReferenceFrame {
         picture,
         counts: counts(&sides.concat()),

@@ -17,6 +17,8 @@ pub struct Splat<T> {
     pub footprint: Footprint<T>,
     /// Red, green and blue, not negative.
     pub colour: [T; 3],
+    /// The most that it covers of a pixel.
+    pub alpha_max: T,
     /// How it is cut, if it is.
     pub cut: Option<SplatCut<T>>,
 }
@@ -42,6 +44,7 @@ pub fn project<T: Real>(
             view.direction(footprint.relative),
         ),
         footprint,
+        alpha_max: T::of(f64::from(scene.training().alpha_max)),
         cut: None,
     })
 }

@@ -4,7 +4,7 @@ use super::footprint::Footprint;
 use super::project::Splat;
 use super::real::Real;
 use super::view::ViewTransform;
-use rara_base::limits::{ALPHA_MAX, ALPHA_MIN_INVERSE};
+use rara_base::limits::{ALPHA_MIN_INVERSE, TRANSMITTANCE_OPAQUE};
 use rara_base::parallel::in_parallel;
 use rara_scene::picture::Picture;
 use rara_scene::settings::{Decay, Settings, Show};
@@ -116,7 +116,7 @@ fn add<T: Real>(pixel: &mut [T; 4], alpha: T, numbers: [T; 3]) {
 pub fn alpha<T: Real>(splat: &Splat<T>, dx: T, dy: T, law: Decay) -> Option<T> {
     let footprint = &splat.footprint;
     let falloff = (T::of(-0.5) * footprint.power(dx, dy)).exp();
-    let whole = T::of(f64::from(ALPHA_MAX)).min(footprint.opacity * falloff);
+    let whole = splat.alpha_max.min(footprint.opacity * falloff);
     if whole * T::of(f64::from(ALPHA_MIN_INVERSE)) < T::one() {
         return None;
     }
@@ -146,7 +146,11 @@ pub fn decayed<T: Real>(alpha: T, weight: T, law: Decay) -> Option<T> {
         Some(match law {
             Decay::Linear => alpha * weight,
             // 1 - (1 - alpha)^w without cancellation for small alpha.
-            Decay::Depth => -(weight * (-alpha).ln_1p()).exp_m1(),
+            // What is opaque has a finite depth.
+            Decay::Depth => {
+                let least = T::of(f64::from(TRANSMITTANCE_OPAQUE).ln());
+                -(weight * (-alpha).ln_1p().max(least)).exp_m1()
+            }
         })
     } else {
         None

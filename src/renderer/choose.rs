@@ -12,8 +12,8 @@ pub(super) struct Targets {
     /// True when splats are tested against a depth that tiles cannot read.
     pub(super) hidden: bool,
     pub(super) multisampled: bool,
-    /// True when colours become linear light once splats are blended.
-    pub(super) linear: bool,
+    /// True when colours become linear light, or are stored, once splats are blended.
+    pub(super) converted: bool,
 }
 
 /// How splats become pixels on a device, and why in that way.
@@ -28,13 +28,14 @@ pub(super) fn raster(
     } else {
         Raster::Quad
     };
-    let needs_tiles = settings.show.needs_tiles() || targets.linear;
+    let needs_tiles = settings.show.needs_tiles() || targets.converted;
     let can_tile = !targets.hidden && matches!(settings.raster, Raster::Auto | Raster::Tiles);
     Ok(match settings.raster {
-        _ if targets.linear && !can_tile => {
+        _ if targets.converted && !can_tile => {
             return Err(Error::Invalid(
-                "ColorSpace::Linear is made by tiles alone, since quads blend into the host's own target; leave the raster \
-                 to itself, and make the host's depth readable (DepthDesc::readable)"
+                "where splats and host are not both linear light (ColorSpace::Linear, Training::linear), the picture is \
+                 made by tiles alone, since quads blend into the host's own target; leave the raster to itself, and make \
+                 the host's depth readable (DepthDesc::readable)"
                     .into(),
             ));
         }
@@ -107,7 +108,7 @@ mod tests {
             tiles: 1000,
             hidden: false,
             multisampled: false,
-            linear: true,
+            converted: true,
         };
         let hidden = Targets {
             hidden: true,
@@ -128,7 +129,7 @@ mod tests {
             tiles: 1000,
             hidden: false,
             multisampled: false,
-            linear: false,
+            converted: false,
         };
         let hidden = Targets {
             hidden: true,
@@ -154,7 +155,7 @@ mod tests {
             }
             assert_eq!(chosen(DeviceShape::Cpu, mesh_shader, usual), Raster::Tiles);
             let linear = Targets {
-                linear: true,
+                converted: true,
                 ..multisampled
             };
             assert_eq!(chosen(gpu, mesh_shader, linear), Raster::Tiles);

@@ -83,7 +83,8 @@ impl Renderer {
         let held = self.memory.allocated().map(|held| held.sizes().largest());
         let needed = plan.sizes().largest().max(held.unwrap_or(0));
         let bindings = self.bindings_of(needed.max(request.scene.largest()));
-        Ok(!self.pipelines.has_all(bindings, self.targets(), &plan))
+        let targets = self.targets(request.draws_linear());
+        Ok(!self.pipelines.has_all(bindings, targets, &plan))
     }
 
     /// Decides what a frame computes. It has no memory yet, so that it takes nothing over.
@@ -103,9 +104,10 @@ impl Renderer {
             .free_finished(self.frames.finished(request.submission));
         let tiles = tiles_of(request.camera.width, request.camera.height);
         // Where no quads can take the tiles' place, nothing does.
-        let needs_tiles = self.needs_tiles(request.settings);
+        let targets = self.targets(request.draws_linear());
+        let needs_tiles = needs_tiles(request.settings, &targets);
         let redrawn = self.make_room(request, tiles) || needs_tiles;
-        let (raster, reason) = self.choose_raster(request.settings, tiles)?;
+        let (raster, reason) = self.choose_raster(request.settings, tiles, &targets)?;
         // Quads, which have to be drawn, take the tiles' place only in a frame that is not redrawn.
         let leaves_picture = raster == Raster::Tiles && redrawn && scene.count > 0;
         let picture = request
@@ -132,7 +134,7 @@ impl Renderer {
             scene: scene.id,
             plan: Plan::new(facts, request.camera, request.clip, request.settings)?,
             reason,
-            targets: self.targets(),
+            targets,
             depth_map,
             unit: self.placement.scale(),
             submission: request.submission,
@@ -183,11 +185,12 @@ impl Renderer {
         &self,
         settings: &Settings,
         tiles: u32,
+        targets: &Targets,
     ) -> Result<(Raster, &'static str)> {
         let targets = choose::Targets {
             tiles,
             hidden: self.desc.depth.is_some_and(|depth| !depth.readable),
-            linear: self.desc.color_space == ColorSpace::Linear,
+            converted: targets.convert(settings.show),
             multisampled: self.desc.samples != vk::SampleCountFlags::TYPE_1,
         };
         let device = &self.device;
@@ -200,17 +203,14 @@ impl Renderer {
         Some(depth.map.in_scene(&self.placement))
     }
 
-    pub(super) fn targets(&self) -> Targets {
+    /// The targets of frames whose splats are drawn in linear light, or as stored.
+    pub(super) fn targets(&self, draws_linear: bool) -> Targets {
         Targets {
             colour: self.desc.attachments(),
             expected_depth: self.desc.expected_depth_attachments(),
             linear: self.desc.color_space == ColorSpace::Linear,
+            draws_linear,
         }
-    }
-
-    /// True where only tiles make what settings ask for, so that no quads can take their place.
-    pub(super) fn needs_tiles(&self, settings: &Settings) -> bool {
-        settings.show.needs_tiles() || self.desc.color_space == ColorSpace::Linear
     }
 
     /// A plan's arguments for so many Gaussians of these layers, as far as they follow from device and description.
@@ -301,6 +301,11 @@ impl Renderer {
             _ => Bindings::Address,
         }
     }
+}
+
+/// True where only tiles make what settings ask for, so that no quads can take their place.
+pub(super) fn needs_tiles(settings: &Settings, targets: &Targets) -> bool {
+    settings.show.needs_tiles() || targets.convert(settings.show)
 }
 
 pub(super) fn tiles_of(width: u32, height: u32) -> u32 {

@@ -216,6 +216,11 @@ impl Renderer {
         self.desc.color_format = format;
     }
 
+    /// Changes the meaning of the numbers of the attachment that the next [`configure`](Self::configure) is for.
+    pub(crate) fn set_color_space(&mut self, space: ColorSpace) {
+        self.desc.color_space = space;
+    }
+
     /// Forgets what earlier frames have computed: the next one computes everything. [`configure`](Self::configure) comes
     /// after it.
     pub fn forget(&mut self) {

@@ -24,6 +24,11 @@ pub(crate) struct FrameRequest<'a> {
 }
 
 impl<'a> FrameRequest<'a> {
+    /// True when splats have colours of linear light.
+    pub(crate) fn draws_linear(&self) -> bool {
+        self.colours == SplatColours::Scene && self.scene.is_linear()
+    }
+
     /// A whole picture that is drawn over what lies below, submitted while earlier frames are unfinished.
     pub(crate) fn in_flight(
         scene: &'a SceneBuffers,

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::choose;
+use super::configure::needs_tiles;
 use super::frames::FramesInFlight;
 use super::limits::FrameLimits;
 use super::pair_room::PairRoom;
@@ -114,14 +115,17 @@ impl Renderer {
     /// Compiles the pipelines of all frames within limits, whose largest buffer has so many bytes. The lock that renderers
     /// share is taken for one kind of frame at a time.
     fn compile(&mut self, limits: &FrameLimits, pairs: PairRoom, largest: u64) -> Result<()> {
-        let targets = self.targets();
+        // A scene may be of either light.
+        let targets = [false, true].map(|draws_linear| self.targets(draws_linear));
         let of_memory = self.bindings_of(largest);
         let scene = SceneBuffers::largest_of(limits.gaussians, limits.sh_format);
         let of_scene = self.bindings_of(largest.max(scene));
         let mut pipelines = std::mem::take(&mut self.pipelines);
         let compiled = self.for_each_plan(limits, pairs, &mut |plan| {
-            pipelines.ensure(&self.device, of_memory, targets, plan)?;
-            pipelines.ensure(&self.device, of_scene, targets, plan)?;
+            for targets in targets {
+                pipelines.ensure(&self.device, of_memory, targets, plan)?;
+                pipelines.ensure(&self.device, of_scene, targets, plan)?;
+            }
             Ok(())
         });
         self.pipelines = pipelines;
@@ -165,14 +169,15 @@ impl Renderer {
         (layers, clip, settings, size): (&[SceneLayer], &Clip, &Settings, (u32, u32)),
     ) -> Result<Plan> {
         let camera = Camera::look_at(DVec3::ZERO, DVec3::Z, DVec3::NEG_Y, 50.0, size)?;
-        let (raster, _) = self.choose_raster(settings, tiles(size))?;
+        let targets = self.targets(false);
+        let (raster, _) = self.choose_raster(settings, tiles(size), &targets)?;
         let facts = SceneFacts {
             gaussians: limits.gaussians,
             // Each layer begins with a block of its own.
             blocks: limits.gaussians.div_ceil(limits::BLOCK_SIZE) + limits.layers,
             sh_format: limits.sh_format,
             pair_capacity: pairs.room(),
-            redrawn: self.needs_tiles(settings),
+            redrawn: needs_tiles(settings, &targets),
             ..self.facts(layers, limits.gaussians, raster, self.depth_map())
         };
         let mut plan = Plan::new(facts, &camera, clip, settings)?;

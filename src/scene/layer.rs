@@ -2,10 +2,10 @@
 
 use std::borrow::Cow;
 
-use crate::Gaussians;
 use crate::clip::Clip;
 use crate::numbers::{self, Numbers};
 use crate::placement::Placement;
+use crate::{Gaussians, Training};
 use rara_base::error::{Error, Result};
 use rara_base::setters;
 
@@ -219,7 +219,44 @@ impl<'a> Scene<'a> {
             return Err(Error::Invalid("a scene has at least one layer".into()));
         }
         self.layers.iter().try_for_each(Layer::check)?;
+        self.check_light()?;
         numbers::check(&self.layers, self.gaussians())
+    }
+
+    /// Its layers that have Gaussians, with how these were trained.
+    fn trained(&self) -> impl Iterator<Item = (&Layer<'a>, Training)> {
+        let filled = self
+            .layers
+            .iter()
+            .filter(|layer| !layer.gaussians.is_empty());
+        filled.map(|layer| (layer, layer.gaussians.training()))
+    }
+
+    /// That the colours of all layers are of one kind.
+    fn check_light(&self) -> Result<()> {
+        let (linear, stored): (Vec<_>, Vec<_>) = self.trained().partition(|(_, own)| own.linear);
+        match (linear.first(), stored.first()) {
+            (Some((linear, _)), Some((stored, _))) => Err(Error::Invalid(format!(
+                "the colours of layer '{}' are linear light and those of '{}' are as displays store them, which cannot be \
+                 blended together; draw them one by one",
+                linear.name, stored.name
+            ))),
+            _ => Ok(()),
+        }
+    }
+
+    /// True where the colours are linear light.
+    #[doc(hidden)]
+    pub fn is_linear(&self) -> bool {
+        self.trained().any(|(_, own)| own.linear)
+    }
+
+    /// The most that a splat covers of a pixel.
+    #[doc(hidden)]
+    pub fn alpha_max(&self) -> f32 {
+        self.trained()
+            .map(|(_, own)| own.alpha_max)
+            .fold(1.0, f32::min)
     }
 
     /// The numbers of each layer's Gaussians.

@@ -41,6 +41,13 @@ setters! {
         pub low_pass: f32,
         /// The order in which they were blended. Default: by depth.
         pub sort_by: SortBy,
+        /// The most that a splat covers of a pixel, above 0 to 1. 3DGS trains with 0.99, and `KHR_gaussian_splatting` knows no
+        /// such limit; a scene has the least of its layers'. Default: 0.99.
+        pub alpha_max: f32,
+        /// True where their colours are linear light (`lin_rec709_display` of `KHR_gaussian_splatting`): it is blended as such,
+        /// and becomes what displays store once the picture is whole. All layers of a scene are alike in this. Default:
+        /// false, colours as displays store them.
+        pub linear: bool,
     }
 }
 
@@ -50,6 +57,8 @@ impl Default for Training {
             antialiased: false,
             low_pass: 0.3,
             sort_by: SortBy::default(),
+            alpha_max: 0.99,
+            linear: false,
         }
     }
 }
@@ -67,21 +76,28 @@ impl fmt::Display for Training {
         };
         write!(
             f,
-            "{antialiased}with a low-pass of {} px^2 in the order of {sorted}",
-            self.low_pass
+            "{antialiased}with a low-pass of {} px^2 in the order of {sorted}{}",
+            self.low_pass,
+            if self.linear { " in linear light" } else { "" }
         )
     }
 }
 
 impl Training {
     pub(super) fn check(&self) -> Result<(), String> {
-        match LOW_PASSES.contains(&self.low_pass) {
-            true => Ok(()),
-            false => Err(format!(
+        if !LOW_PASSES.contains(&self.low_pass) {
+            return Err(format!(
                 "the low-pass is {} square pixels: {} to {} can be drawn",
                 self.low_pass,
                 LOW_PASSES.start(),
                 LOW_PASSES.end()
+            ));
+        }
+        match self.alpha_max > 0.0 && self.alpha_max <= 1.0 {
+            true => Ok(()),
+            false => Err(format!(
+                "the largest alpha is {}: above 0 to 1 can be drawn",
+                self.alpha_max
             )),
         }
     }
@@ -92,6 +108,10 @@ impl Training {
 const LOW_PASS: &str = "lowPass";
 #[cfg(feature = "formats")]
 const SORT_BY: &str = "sortBy";
+#[cfg(feature = "formats")]
+const ALPHA_MAX: &str = "alphaMax";
+#[cfg(feature = "formats")]
+const LINEAR: &str = "linear";
 
 #[cfg(feature = "formats")]
 impl Training {
@@ -103,9 +123,16 @@ impl Training {
             SortBy::Depth => "depth".to_owned(),
             SortBy::Distance => "distance".to_owned(),
         });
-        [(LOW_PASS, low_pass), (SORT_BY, sort_by)]
-            .into_iter()
-            .filter_map(|(name, value)| Some((name, value?)))
+        let alpha_max = (self.alpha_max != usual.alpha_max).then(|| self.alpha_max.to_string());
+        let linear = (self.linear != usual.linear).then(|| self.linear.to_string());
+        [
+            (LOW_PASS, low_pass),
+            (SORT_BY, sort_by),
+            (ALPHA_MAX, alpha_max),
+            (LINEAR, linear),
+        ]
+        .into_iter()
+        .filter_map(|(name, value)| Some((name, value?)))
     }
 
     /// Takes over what a mark of such a name says; the error says what of it cannot be drawn, and leaves it as it is. Other names
@@ -124,6 +151,12 @@ impl Training {
                 "distance" => SortBy::Distance,
                 _ => return Err(unusable("depth and distance are known")),
             };
+        } else if name.eq_ignore_ascii_case(ALPHA_MAX) {
+            marked.alpha_max = value.parse().unwrap_or(f32::NAN);
+        } else if name.eq_ignore_ascii_case(LINEAR) {
+            marked.linear = value
+                .parse()
+                .map_err(|_| unusable("true and false are known"))?;
         }
         marked.check().map_err(|error| unusable(&error))?;
         *self = marked;

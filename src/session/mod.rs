@@ -6,7 +6,9 @@ use std::time::Instant;
 use ash::vk;
 
 use crate::passes::{SceneBuffers, SceneLayer, SplatColours};
-use crate::renderer::{ConfiguredFrame, FrameRequest, Outcome, Renderer, RendererDesc, Submission};
+use crate::renderer::{
+    ColorSpace, ConfiguredFrame, FrameRequest, Outcome, Renderer, RendererDesc, Submission,
+};
 use crate::stats::FrameStats;
 use crate::trace::{self, Trace};
 use rara_base::error::{Error, Result};
@@ -14,8 +16,8 @@ use rara_gpu::{Device, Drawer, PipelineFile};
 use rara_scene::Scene;
 use rara_scene::camera::Camera;
 use rara_scene::clip::Clip;
-use rara_scene::precision::ShFormat;
-use rara_scene::settings::Settings;
+use rara_scene::precision::{ShFormat, TargetFormat};
+use rara_scene::settings::{Settings, Show};
 
 mod desc;
 mod headless;
@@ -131,8 +133,20 @@ impl Session {
         let trace = self.trace.as_ref();
         let renderer = &mut self.renderer;
         let scene = loaded(&self.scene, "render")?;
-        let format = target.set_format(&self.device, settings.precision.target)?;
+        let is_linear =
+            scene.is_linear() && colours == SplatColours::Scene && settings.show == Show::Colour;
+        // Linear light needs more bits in the dark than what is stored.
+        let wanted = match settings.precision.target {
+            TargetFormat::Unorm8 if is_linear => TargetFormat::Half,
+            wanted => wanted,
+        };
+        let format = target.set_format(&self.device, wanted)?;
+        target.set_linear(is_linear);
         renderer.set_color_format(vulkan_format(format));
+        renderer.set_color_space(match is_linear {
+            true => ColorSpace::Linear,
+            false => ColorSpace::Stored,
+        });
         let request = FrameRequest {
             scene,
             camera,
@@ -210,10 +224,7 @@ fn submit(
     (target, frame): (&mut Target, ConfiguredFrame),
     trace: Option<&Trace>,
 ) -> Result<()> {
-    let clear = request
-        .settings
-        .background
-        .map_or([0.0; 4], |[r, g, b]| [r, g, b, 1.0]);
+    let clear = target.clear_colour(request.settings.background);
     let image = target.drawn_into();
     let recording = Instant::now();
     let (mut recorded, mut is_prepared) = (recording, false);

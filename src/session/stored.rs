@@ -16,6 +16,8 @@ pub(super) struct PictureBytes<'a> {
     pub(super) pixels: &'a [u8],
     pub(super) extent: vk::Extent2D,
     pub(super) format: TargetFormat,
+    /// True when they are linear light, which becomes what displays store.
+    pub(super) linear: bool,
 }
 
 impl PictureBytes<'_> {
@@ -25,15 +27,20 @@ impl PictureBytes<'_> {
             pixels,
             extent,
             format,
+            linear,
         } = *self;
-        Picture {
+        let mut picture = Picture {
             width: extent.width,
             height: extent.height,
             pixels: match begins.is_empty() {
                 true => format.decode(pixels).collect(),
                 false => TilePicture::decode(begins, pixels, extent, format),
             },
+        };
+        if linear {
+            picture.store_light();
         }
+        picture
     }
 }
 
@@ -49,6 +56,7 @@ pub struct StoredPicture {
     begins: usize,
     extent: vk::Extent2D,
     format: TargetFormat,
+    linear: bool,
     spare: SpareMemory,
 }
 
@@ -65,6 +73,7 @@ impl StoredPicture {
             begins: stored.begins.len(),
             extent: stored.extent,
             format: stored.format,
+            linear: stored.linear,
             spare: spare.clone(),
         }
     }
@@ -77,6 +86,7 @@ impl StoredPicture {
             pixels,
             extent: self.extent,
             format: self.format,
+            linear: self.linear,
         };
         stored.decode()
     }

@@ -9,6 +9,7 @@ use crate::passes::TilePicture;
 use rara_base::error::{Error, Result};
 use rara_gpu::{Buffer, BufferDesc, Device, Image, ImageDesc, Location};
 use rara_scene::camera::Camera;
+use rara_scene::picture::linear_light;
 use rara_scene::precision::TargetFormat;
 
 /// A picture for frames, replaced where a frame needs another size or format: an image that is drawn into or, without one,
@@ -18,6 +19,8 @@ pub(super) struct Target {
     /// True when the tiles' picture may be the picture.
     takes_tiles: bool,
     format: TargetFormat,
+    /// True when the last frame's pixels are linear light.
+    linear: bool,
     /// The tiles' picture, if the last frame's is that, and its size.
     tiles: Option<(TilePicture, vk::Extent2D)>,
     image: Option<Image>,
@@ -61,6 +64,14 @@ impl Target {
         Ok(format)
     }
 
+    /// Says whether the next frame's pixels are linear light.
+    pub(super) fn set_linear(&mut self, linear: bool) {
+        if self.linear != linear {
+            (self.tiles, self.held) = (None, None);
+        }
+        self.linear = linear;
+    }
+
     /// The format in which the tiles' picture may be the picture; `None` where that is drawn, as on a background.
     pub(super) fn of_tiles_on(&self, background: Option<[f32; 3]>) -> Option<TargetFormat> {
         (self.takes_tiles && background.is_none()).then_some(self.format)
@@ -95,6 +106,17 @@ impl Target {
     pub(super) fn drawn_into(&mut self) -> Option<&Image> {
         (self.tiles, self.held) = (None, None);
         self.image.as_ref()
+    }
+
+    /// The pixels on which a frame is drawn, as they are in the image.
+    pub(super) fn clear_colour(&self, background: Option<[f32; 3]>) -> [f32; 4] {
+        background.map_or([0.0; 4], |rgb| {
+            let [r, g, b] = match self.linear {
+                true => rgb.map(linear_light),
+                false => rgb,
+            };
+            [r, g, b, 1.0]
+        })
     }
 
     /// Notes that the image shows the renderer's last frame on this background.
@@ -141,6 +163,7 @@ impl Target {
                 pixels: &read(device, &tiles.pixels, pixels)?,
                 extent: *extent,
                 format,
+                linear: self.linear,
             }));
         }
         let Some(image) = &self.image else {
@@ -167,6 +190,7 @@ impl Target {
             pixels: &readback.mapped()[..size as usize],
             extent,
             format,
+            linear: self.linear,
         });
         self.readback = Some(readback);
         Ok(result)

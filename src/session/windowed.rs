@@ -10,7 +10,7 @@ use super::panels::{self, Panel, Panels};
 use super::target::Target;
 use super::{HeadlessDesc, Session, loaded};
 use crate::passes::{Lines, SceneLayer, SplatColours};
-use crate::renderer::{FrameRequest, Outcome, RendererDesc};
+use crate::renderer::{ColorSpace, FrameRequest, Outcome, RendererDesc};
 use crate::stats::FrameStats;
 use rara_base::error::{Error, Result};
 use rara_gpu::{
@@ -167,6 +167,7 @@ impl Windowed {
         let renderer = &mut self.session.renderer;
         let scene = loaded(&self.session.scene, "show")?;
         renderer.set_color_format(self.swapchain.format());
+        renderer.set_color_space(ColorSpace::Stored);
         renderer.compiles(&FrameRequest::in_flight(scene, camera, clip, settings))
     }
 
@@ -186,6 +187,7 @@ impl Windowed {
         let renderer = &mut self.session.renderer;
         let scene = loaded(&self.session.scene, "show")?;
         renderer.set_color_format(swapchain.format());
+        renderer.set_color_space(ColorSpace::Stored);
         let configured = renderer.configure(scene, camera, clip, settings)?;
         let changes_nothing = configured.changes_nothing();
         let seen: Vec<_> = lines

@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 use std::{env, fs};
 
+use rara::Training;
 use rara::ash::vk;
 use rara::gpu::{Device, DeviceDesc, DeviceShape};
 use rara::types::{FrameData, Splat};
@@ -175,7 +176,9 @@ fn alpha(splat: &Splat, at: [f32; 2]) -> f32 {
     let [k2, opacity, ..] = splat.conic_cut;
     let (u, v) = (k0 * (at[0] - x), k1 * (at[0] - x));
     let w = v + k2 * (at[1] - y);
-    let alpha = limits::ALPHA_MAX.min(opacity * (-0.5 * (u * u + w * w)).exp());
+    let alpha = Training::default()
+        .alpha_max
+        .min(opacity * (-0.5 * (u * u + w * w)).exp());
     if alpha >= limits::ALPHA_MIN {
         alpha
     } else {

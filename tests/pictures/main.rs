@@ -15,6 +15,7 @@ mod determinism;
 mod invariance;
 mod large;
 mod layers;
+mod light;
 mod memory;
 mod orthographic;
 mod paper;

@@ -5,10 +5,13 @@ mod channels;
 mod cues;
 #[cfg(feature = "picture")]
 mod file;
+mod light;
 
 pub use cues::{Cue, Cues};
 #[cfg(feature = "picture")]
 pub use file::PngCompression;
+#[doc(hidden)]
+pub use light::linear_light;
 
 /// RGBA pixels, 32-bit float, premultiplied, blended values as they are (no transfer function).
 #[derive(Debug, Clone, PartialEq, Default)]

@@ -76,31 +76,71 @@ fn the_splats_picture_meets_a_hosts_pixels_as_linear_light() {
     let camera = common::views(&scene, 3, (VIEW.width, VIEW.height))[0];
     let clip = common::clip(&scene, 1, ClipOp::And);
     let shown = (camera, clip, Settings::default());
+    let mut light = scene.clone();
+    let training = light.training().linear(true);
+    light.set_training(training).expect("it can be drawn");
     let mut headless = common::headless();
     headless.load(&scene).expect("uploads");
     let (camera, clip, settings) = &shown;
     headless.render(camera, clip, settings).expect("renders");
     let picture = headless.picture().expect("reads back");
     let converted = in_linear_light(&picture);
-    for (space, bindings) in [
-        (ColorSpace::Linear, Bindings::Mixed),
-        (ColorSpace::Linear, Bindings::Address),
-        (ColorSpace::Stored, Bindings::Mixed),
+    // What is blended in linear light becomes what the host has, too.
+    headless.load(&light).expect("uploads");
+    headless.render(camera, clip, settings).expect("renders");
+    let of_light = headless.picture().expect("reads back");
+    let light_itself = in_linear_light(&of_light);
+    for (space, bindings, scene, right, name) in [
+        (
+            ColorSpace::Linear,
+            Bindings::Mixed,
+            &scene,
+            &converted,
+            "linear.png",
+        ),
+        (
+            ColorSpace::Linear,
+            Bindings::Address,
+            &scene,
+            &converted,
+            "linear.png",
+        ),
+        (
+            ColorSpace::Stored,
+            Bindings::Mixed,
+            &scene,
+            &picture,
+            "stored.png",
+        ),
+        (
+            ColorSpace::Linear,
+            Bindings::Mixed,
+            &light,
+            &light_itself,
+            "light.png",
+        ),
+        (
+            ColorSpace::Stored,
+            Bindings::Address,
+            &light,
+            &of_light,
+            "light_stored.png",
+        ),
     ] {
         let desc = in_flight(FLOATS, bindings).color_space(space);
         let host = open_host(FLOATS, VIEW, true);
-        let mut engine = Engine::new(host, &scene, ShFormat::default(), desc);
+        let mut engine = Engine::new(host, scene, ShFormat::default(), desc);
         engine.configure(&shown);
         let configured = engine.configured.as_ref().expect("it was configured");
         assert_eq!(configured.raster().path, "tiles");
         engine.record(vk::Offset2D::default());
         let pixels = engine.wait_for_all();
-        let (right, name) = match space {
-            ColorSpace::Linear => (&converted, "linear.png"),
-            _ => (&picture, "stored.png"),
-        };
         let expected = over_stripes(&engine.host, right);
-        assert_close(&format!("{space:?}, {bindings:?}"), &pixels, &expected);
+        assert_close(
+            &format!("{name}, {space:?}, {bindings:?}"),
+            &pixels,
+            &expected,
+        );
         show(name, &pixels);
         engine.close();
     }

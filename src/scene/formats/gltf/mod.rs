@@ -27,6 +27,9 @@ pub(super) const EXTENSION: &str = "KHR_gaussian_splatting";
 /// Where a primitive's extras have this project's marks of how its Gaussians were trained, and the one that only glTF lacks.
 pub(super) const MARKS: &str = "rara";
 pub(super) const ANTIALIASED: &str = "antialiased";
+/// Its names of linear light, and of colours as displays store them.
+pub(super) const LINEAR: &str = "lin_rec709_display";
+pub(super) const STORED: &str = "srgb_rec709_display";
 /// What names of its compression begin with; drafts have a number behind.
 const SPZ: &str = "KHR_gaussian_splatting_compression_spz";
 
@@ -99,7 +102,7 @@ pub(super) fn read_document(
         }
         for &(primitive, extension) in &mesh.splats {
             let mut made = read_primitive(document, &mut buffers, primitive, extension)?;
-            set_training(&mut made, primitive);
+            set_training(&mut made, primitive, extension);
             match turned.of_inner(&transform)? {
                 Transform::Similar(placement) => made.place(&placement),
                 Transform::Other(affine) => made.transform(&affine),
@@ -259,13 +262,16 @@ fn read_primitive(
             "the order",
             "is drawn by distance",
         ),
-        (
-            "colorSpace",
-            "srgb_rec709_display",
-            "colours of the space",
-            "are drawn as sRGB",
-        ),
     ];
+    let colours = extension.get("colorSpace").and_then(Value::as_str);
+    let unknown_colours = colours
+        .filter(|space| ![LINEAR, STORED].contains(space))
+        .map(|space| {
+            format!(
+                "colours of the space \"{}\" are drawn as sRGB",
+                shortened(space)
+            )
+        });
     let notes = notes
         .into_iter()
         .filter_map(|(key, usual, what, is_drawn)| {
@@ -347,7 +353,9 @@ fn read_primitive(
         }
         Ok(())
     })?;
-    notes.for_each(|note| made.report.note(note));
+    notes
+        .chain(unknown_colours)
+        .for_each(|note| made.report.note(note));
     let left = attributes.and_then(Value::as_object).into_iter().flatten();
     let left = left
         .map(|(name, _)| &name[..])
@@ -384,10 +392,12 @@ fn is_read(name: &str, degree: u32) -> bool {
     }
 }
 
-/// Says how the Gaussians of a primitive were trained. The extension knows one order, by distance; for the rest, and for what is
+/// Says how the Gaussians of a primitive were trained. The extension knows one order, by distance, and no largest alpha; for the rest, and for what is
 /// trained by depth, this project's own files have marks.
-fn set_training(made: &mut FormatOutput, primitive: &Value) {
+fn set_training(made: &mut FormatOutput, primitive: &Value, extension: &Value) {
+    let colours = extension.get("colorSpace").and_then(Value::as_str);
     let mut training = made.gaussians.training().sort_by(SortBy::Distance);
+    training = training.alpha_max(1.0).linear(colours == Some(LINEAR));
     let extras = primitive.get("extras");
     let marks = extras.and_then(|extras| extras.get(MARKS)?.as_object());
     for (name, value) in marks.into_iter().flatten() {

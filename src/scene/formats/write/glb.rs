@@ -4,7 +4,7 @@ use glam::DVec3;
 use serde_json::{Value, json};
 
 use super::super::super::{Gaussians, SortBy, Training};
-use super::super::gltf::{ANTIALIASED, EXTENSION, MARKS, turn};
+use super::super::gltf::{ANTIALIASED, EXTENSION, LINEAR, MARKS, STORED, turn};
 use super::corners;
 use crate::placement::Placement;
 use rara_base::error::{Error, Result};
@@ -50,7 +50,10 @@ pub(super) fn encode(gaussians: &Gaussians) -> Result<Vec<u8>> {
         }
     }
     let training = gaussians.training();
-    let usual = Training::default().sort_by(SortBy::Distance);
+    let usual = Training::default()
+        .sort_by(SortBy::Distance)
+        .alpha_max(1.0)
+        .linear(training.linear);
     let mut marks: serde_json::Map<String, Value> = training
         .marks(usual)
         .map(|(name, value)| (name.into(), json!(value)))
@@ -69,7 +72,10 @@ pub(super) fn encode(gaussians: &Gaussians) -> Result<Vec<u8>> {
             "attributes": parts.attributes,
             "extensions": { EXTENSION: {
                 "kernel": "ellipse",
-                "colorSpace": "srgb_rec709_display",
+                "colorSpace": match turned.training().linear {
+                    true => LINEAR,
+                    false => STORED,
+                },
                 "sortingMethod": "cameraDistance",
                 "projection": "perspective",
             } },

@@ -117,3 +117,33 @@ fn paths_that_are_named_exist() {
         }
     }
 }
+
+#[test]
+fn tests_of_the_tables_of_a_specification_exist() {
+    let text = read(&root().join("src/guide/formats.md"));
+    let (_, section) = text.split_once("row by row\n").expect("the section");
+    let section = section.split("\n## ").next().unwrap_or_default();
+    let rows = section.lines().filter(|line| line.ends_with("` |"));
+    let names: BTreeSet<_> = rows.filter_map(|row| row.rsplit('`').nth(1)).collect();
+    assert!(names.len() > 10, "{names:?}");
+    let folders = [
+        "tests/files/formats",
+        "tests/files/formats/harmonics",
+        "tests/pictures",
+    ];
+    let files = folders
+        .iter()
+        .flat_map(|folder| std::fs::read_dir(root().join(folder)).expect("tests"));
+    let files = files.map(|entry| entry.expect("an entry").path());
+    let code: Vec<_> = files
+        .filter(|path| path.is_file())
+        .map(|path| read(&path))
+        .collect();
+    for name in names {
+        let function = format!("fn {name}()");
+        assert!(
+            code.iter().any(|code| code.contains(&function)),
+            "there is no test {name}"
+        );
+    }
+}

@@ -4,9 +4,9 @@ use meshoptimizer_rs::Workspace;
 use meshoptimizer_rs::codec::{
     ExpMode, VertexEncoding, encode_filter_exp, encode_filter_quat, encode_vertex_buffer,
 };
-use rara::Gaussians;
 use rara::glam::{DAffine3, DMat3, DQuat, DVec3, Quat, Vec3};
 use rara::scene::{LoadReport, load_from};
+use rara::{Gaussians, SortBy, Training};
 use serde_json::{Value, json};
 
 use super::variants::base64;
@@ -567,5 +567,59 @@ fn what_is_left_out_is_said() {
         "beside what is drawn: KHR_gaussian_splatting:SH_DEGREE_4_COEF_0, _LABEL, morph targets",
     ] {
         assert!(report.contains(says), "{report}");
+    }
+}
+
+/// Words that only other extensions know: the asset is drawn as the specification has it, and that is said.
+#[test]
+fn unknown_words_are_said_and_drawn_as_usual() {
+    let (plain, _) = Asset::new().load().unwrap();
+    for (key, says) in [
+        ("kernel", "the kernel \"curly\" is drawn as an ellipse"),
+        (
+            "projection",
+            "the projection \"curly\" is drawn as perspective",
+        ),
+        ("sortingMethod", "the order \"curly\" is drawn by distance"),
+        (
+            "colorSpace",
+            "colours of the space \"curly\" are drawn as sRGB",
+        ),
+    ] {
+        let mut asset = Asset::new();
+        asset.primitive()["extensions"][OWN][key] = json!("curly");
+        let (found, report) = asset.load().unwrap();
+        assert!(report.to_string().contains(says), "{report}");
+        assert_eq!(found, plain);
+        // Where it requires what makes the word mean something, it cannot be drawn.
+        asset.document["extensionsRequired"] = json!(["EXT_gaussian_splatting_curly"]);
+        let error = asset.load().unwrap_err().to_string();
+        assert!(error.contains("EXT_gaussian_splatting_curly"), "{error}");
+    }
+}
+
+#[test]
+fn an_asset_says_how_it_is_drawn() {
+    let mut asset = Asset::new();
+    let usual = Training::default().sort_by(SortBy::Distance).alpha_max(1.0);
+    assert_eq!(asset.load().unwrap().0.training(), usual);
+    asset.primitive()["extensions"][OWN]["colorSpace"] = json!("lin_rec709_display");
+    assert_eq!(asset.load().unwrap().0.training(), usual.linear(true));
+    // What is lacking is said by its name.
+    for name in [
+        "POSITION".to_owned(),
+        format!("{OWN}:ROTATION"),
+        format!("{OWN}:SCALE"),
+        format!("{OWN}:OPACITY"),
+        format!("{OWN}:SH_DEGREE_0_COEF_0"),
+        format!("{OWN}:SH_DEGREE_1_COEF_2"),
+    ] {
+        let mut asset = Asset::new();
+        asset.primitive()["attributes"]
+            .as_object_mut()
+            .unwrap()
+            .remove(&name);
+        let error = asset.load().unwrap_err().to_string();
+        assert!(error.contains(&name), "{error}");
     }
 }

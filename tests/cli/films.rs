@@ -156,6 +156,24 @@ fn ffmpeg_gets_opaque_pictures_and_its_failures_are_sentences() {
         "{}",
         stderr(&made)
     );
+    let raw = done(line(
+        &here,
+        &format!("render @/scene.ply {flags} -o - --format rgba"),
+    ));
+    for (name, words_are) in [
+        ("clear.mov", "-pix_fmt rgba -c:v png"),
+        ("clear.webm", "format=yuva420p"),
+    ] {
+        let made = done(film(&path, &format!("-o @/{name} --alpha")));
+        assert!(!stderr(&made).contains("no transparency"));
+        assert!(fs::read(here.join(name)).expect("a film") == raw.stdout);
+        let words = fs::read_to_string(here.join("bin/ffmpeg.words")).expect("words");
+        assert!(words.contains(words_are), "{words}");
+    }
+    for name in ["clear.mp4", "clear.mkv", "clear.png"] {
+        let what = format!("-o @/{name} --alpha");
+        refused(&film(&path, &what), 2, "a name that ends in .mov or .webm");
+    }
     let before = files(&here);
     for script in [
         "echo 'Unknown encoder libx264.' >&2; exit 1",

@@ -35,6 +35,11 @@ pub(super) struct FilmArgs {
     /// A picture as png, all of them as apng, or their bare bytes one after the other as rgba.
     #[arg(long, value_name = "FORMAT")]
     format: Option<Stream>,
+    /// Keep the transparency of a .mov (PNG, without loss) or a .webm (VP9)
+    ///
+    /// An .apng always does, .mp4 and .mkv cannot.
+    #[arg(long)]
+    alpha: bool,
 }
 
 /// What goes to standard output.
@@ -57,13 +62,13 @@ pub(super) enum FilmFormat {
     Apng,
     /// Bytes without a header.
     Raw,
-    /// Encoded by ffmpeg, without alpha.
+    /// Encoded by ffmpeg.
     Video(Container),
 }
 
 /// The file name of a picture or a film; its ending says the format.
 pub(super) fn film_path(path: OsString) -> std::result::Result<PathBuf, String> {
-    let is_film = FilmFormat::from_path(Path::new(&path)).is_some();
+    let is_film = FilmFormat::from_path(Path::new(&path), false).is_some();
     match is_film {
         true => Ok(path.into()),
         false => values::picture_path(path)
@@ -80,18 +85,18 @@ pub(super) fn pictures_file() -> impl TypedValueParser<Value = PathBuf> {
 }
 
 impl FilmFormat {
-    /// The kind of film that a file's name stands for; none for that of a picture.
-    pub(super) fn from_path(path: &Path) -> Option<Self> {
+    /// The kind of film that a file's name stands for, with transparency or without; none for that of a picture.
+    pub(super) fn from_path(path: &Path, has_alpha: bool) -> Option<Self> {
         let ending = path.extension()?.to_str()?.to_ascii_lowercase();
         match ending.as_str() {
             "apng" => Some(Self::Apng),
-            other => Container::from_extension(other).map(Self::Video),
+            other => Container::from_extension(other, has_alpha).map(Self::Video),
         }
     }
 
     /// True where pixels have no alpha.
     pub(super) fn is_opaque(self) -> bool {
-        matches!(self, Self::Video(_))
+        matches!(self, Self::Video(container) if !container.has_alpha)
     }
 }
 
@@ -112,8 +117,17 @@ impl FilmArgs {
             }
             Some(Stream::Apng) => Some(FilmFormat::Apng),
             Some(Stream::Rgba) => Some(FilmFormat::Raw),
-            Some(Stream::Png) | None => output.and_then(FilmFormat::from_path),
+            Some(Stream::Png) | None => {
+                output.and_then(|path| FilmFormat::from_path(path, self.alpha))
+            }
         };
+        if self.alpha && kind.is_none() {
+            return Err(Failure::Usage(
+                "--alpha keeps the transparency of a film: give -o a name that ends in .mov or .webm, or leave it out, as \
+                 pictures have it"
+                    .into(),
+            ));
+        }
         if self.fps.is_some() && !matches!(kind, Some(FilmFormat::Apng | FilmFormat::Video(_))) {
             return Err(Failure::Usage(format!(
                 "--fps is the pace of a film: give -o a name that ends in .apng, {ENDINGS}, or leave it out"
@@ -129,7 +143,7 @@ impl FilmArgs {
                 "a film is one file: leave the braces out of its name, or name numbered pictures, as frame_{:04}.png".into(),
             ));
         }
-        if kind.is_opaque() {
+        if matches!(kind, FilmFormat::Video(_)) {
             video::encoder(file)?;
         }
         Ok(output::check_file(file)?)
@@ -244,7 +258,8 @@ pub(super) fn one_size(
 /// Says once what becomes of transparency where a film has none.
 pub(super) fn say_opaque() {
     output::say(
-        "note: such a film has no transparency: it is drawn on black; --background chooses another colour",
+        "note: such a film has no transparency: it is drawn on black; --background chooses another colour, and --alpha keeps the \
+         transparency of a .mov or .webm",
     );
 }
 
@@ -254,7 +269,11 @@ mod tests {
 
     #[test]
     fn names_say_what_is_a_film() {
-        let kind = |name: &str| FilmFormat::from_path(Path::new(name));
+        let kind = |name: &str| FilmFormat::from_path(Path::new(name), false);
+        let clear = |name: &str| FilmFormat::from_path(Path::new(name), true);
+        assert!(clear("a.mov").is_some_and(|kind| !kind.is_opaque()));
+        assert!(clear("a.WEBM").is_some_and(|kind| !kind.is_opaque()));
+        assert_eq!((clear("a.mp4"), clear("a.mkv")), (None, None));
         assert_eq!(kind("a.APNG"), Some(FilmFormat::Apng));
         assert!(kind("a.mp4").is_some_and(FilmFormat::is_opaque));
         assert!(kind("a.webm").is_some() && kind("a.mov").is_some() && kind("a.mkv").is_some());

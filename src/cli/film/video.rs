@@ -16,6 +16,9 @@ pub(in super::super) struct Container {
     format: &'static str,
     /// The encoder, and how good it is: hardly a difference to be seen.
     flags: &'static [&'static str],
+    /// What becomes of the pictures before.
+    filter: &'static [&'static str],
+    pub(super) has_alpha: bool,
 }
 
 const H264: &[&str] = &["-c:v", "libx264", "-crf", "17", "-movflags", "+faststart"];
@@ -29,17 +32,60 @@ const VP9: &[&str] = &[
     "-row-mt",
     "1",
 ];
+/// Transparency is a film of its own, and frames that are not shown are not for such.
+const VP9_ALPHA: &[&str] = &[
+    "-c:v",
+    "libvpx-vp9",
+    "-crf",
+    "24",
+    "-b:v",
+    "0",
+    "-row-mt",
+    "1",
+    "-auto-alt-ref",
+    "0",
+];
+
+/// Halved colours need even sides. Films of this size are BT.709 for those who play them.
+macro_rules! halved {
+    ($format:literal) => {
+        &[
+            "-vf",
+            concat!(
+                "crop=trunc(iw/2)*2:trunc(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv,format=",
+                $format,
+                ",setparams=range=tv:color_primaries=bt709:color_trc=bt709:colorspace=bt709"
+            ),
+            "-colorspace",
+            "bt709",
+            "-color_primaries",
+            "bt709",
+            "-color_trc",
+            "bt709",
+            "-color_range",
+            "tv",
+        ]
+    };
+}
 
 impl Container {
-    pub(super) fn from_extension(ending: &str) -> Option<Self> {
-        let (format, flags) = match ending {
-            "mp4" => ("mp4", H264),
-            "mov" => ("mov", H264),
-            "mkv" => ("matroska", &H264[..4]),
-            "webm" => ("webm", VP9),
+    /// The kind that a name with this ending stands for, with transparency or without.
+    pub(super) fn from_extension(ending: &str, has_alpha: bool) -> Option<Self> {
+        let (format, flags, filter): (_, &[&str], &[&str]) = match (ending, has_alpha) {
+            ("mov", true) => ("mov", &["-c:v", "png"], &["-pix_fmt", "rgba"]),
+            ("webm", true) => ("webm", VP9_ALPHA, halved!("yuva420p")),
+            ("mp4", false) => ("mp4", H264, halved!("yuv420p")),
+            ("mov", false) => ("mov", H264, halved!("yuv420p")),
+            ("mkv", false) => ("matroska", &H264[..4], halved!("yuv420p")),
+            ("webm", false) => ("webm", VP9, halved!("yuv420p")),
             _ => return None,
         };
-        Some(Self { format, flags })
+        Some(Self {
+            format,
+            flags,
+            filter,
+            has_alpha,
+        })
     }
 }
 
@@ -96,9 +142,7 @@ impl Video {
             .args(["-f", "rawvideo", "-pixel_format", "rgba"])
             .args(["-video_size", &format!("{width}x{height}")])
             .args(["-framerate", &fps.to_string(), "-i", "pipe:0", "-an"])
-            // Halved colours need even sides. Films of this size are BT.709 for those who play them.
-            .args(["-vf", "crop=trunc(iw/2)*2:trunc(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv,format=yuv420p,setparams=range=tv:color_primaries=bt709:color_trc=bt709:colorspace=bt709"])
-            .args(["-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709", "-color_range", "tv"])
+            .args(container.filter)
             .args(container.flags)
             .args(["-f", container.format, "-y"]);
         let mut written = OsString::from("file:");

@@ -33,6 +33,7 @@ const NEEDS: &[(&str, Need)] = &[
     ("save_job", Flag(&["output"])),
     ("png", Flag(&["output"])),
     ("fps", Flag(&["output"])),
+    ("alpha", Flag(&["output"])),
     ("format", Flag(&["output"])),
     (
         "part",

@@ -60,9 +60,10 @@ pub(super) struct Render {
     #[arg(short, long, value_name = "OUT", value_parser = film::pictures_file())]
     #[arg(required_unless_present_any = ["json", "json_lines"])]
     output: Option<PathBuf>,
-    /// Channels of the .exr beside its colours
+    /// Channels beside the colours: in an .exr, or in files beside a .png (16 bits) or .npy
     ///
-    /// Each is drawn in frames of its own, and no time of it is reported.
+    /// Beside a.png and a.npy they are a.depth.png, a.normal.png and so on. In 16 bits depths are thousandths of a world unit,
+    /// normals from -1 to 1, weights from 0 to 1, counts as they are, and layers count from 1. Each is drawn in frames of its own, and no time of it is reported.
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     aov: Vec<Aov>,
     /// Render N times from nothing, and report the medians
@@ -205,7 +206,7 @@ impl Render {
         };
         let several = self.several(pictures.numbers().len());
         if !self.aov.is_empty() {
-            pictures::needs_floats(self.output.as_deref(), "--aov makes channels")?;
+            pictures::takes_channels(self.output.as_deref())?;
         }
         if settings.show == Show::Count {
             pictures::needs_floats(self.output.as_deref(), pictures::COUNTS)?;

@@ -177,9 +177,9 @@ pub(super) fn picture_path(path: OsString) -> Result<PathBuf, String> {
     let path = PathBuf::from(path);
     let ending = path.extension().and_then(|e| e.to_str()).unwrap_or("");
     match ending.to_ascii_lowercase().as_str() {
-        "png" | "exr" => Ok(path),
+        "png" | "exr" | "npy" => Ok(path),
         _ if path == Path::new(STANDARD) => Ok(path),
-        _ => Err("a picture's name ends in .png (8 bits) or .exr (32-bit float)".into()),
+        _ => Err("a picture's name ends in .png (8 bits), .exr or .npy (32-bit float)".into()),
     }
 }
 

@@ -70,6 +70,68 @@ fn channels_say_what_the_picture_is_made_of() {
     assert!(3.0 * sum("N.X") - 2.0 * sum("N.Y") - 5.0 * sum("N.Z") > 0.0);
 }
 
+/// The same numbers stand beside a .npy, and 16 bits of them beside a .png.
+#[test]
+fn channels_beside_png_and_npy() {
+    let here = folder("aov-beside");
+    scene(&here);
+    let view = "--size 64x48 --eye 3,-2,-5 --target 0,0,0 --aov depth,normal,layer,weight,count";
+    for ending in ["exr", "npy", "png"] {
+        done(line(
+            &here,
+            &format!("render @/scene.ply -o @/a.{ending} {view}"),
+        ));
+    }
+    let all = channels(&here.join("a.exr"));
+    let of = |name: &str| &all.iter().find(|c| c.0 == name).expect("a channel").1;
+    let array = |name: &str| {
+        let bytes = std::fs::read(here.join(name)).expect("an array");
+        assert!(bytes.starts_with(b"\x93NUMPY"));
+        let numbers = bytes[128..].chunks_exact(4);
+        let numbers = numbers.map(|four| f32::from_le_bytes(four.try_into().expect("four")));
+        numbers.collect::<Vec<_>>()
+    };
+    assert_eq!(array("a.depth.npy"), *of("Z"));
+    let normals = array("a.normal.npy");
+    let colours = array("a.npy");
+    for at in 0..64 * 48 {
+        let normal = ["N.X", "N.Y", "N.Z"].map(|name| of(name)[at]);
+        assert_eq!(normals[3 * at..][..3], normal);
+        let colour = ["R", "G", "B", "A"].map(|name| of(name)[at]);
+        assert_eq!(colours[4 * at..][..4], colour);
+    }
+    for (file, name, steps, plus) in [
+        ("a.depth.png", "Z", 1000.0, 0.0),
+        ("a.weight.png", "weight", 65535.0, 0.0),
+        ("a.count.png", "count", 1.0, 0.0),
+        ("a.layer.png", "layer", 1.0, 1.0),
+    ] {
+        let decoder = png::Decoder::new(std::io::BufReader::new(
+            std::fs::File::open(here.join(file)).expect("a picture"),
+        ));
+        let mut reader = decoder.read_info().expect("a PNG");
+        let info = reader.info();
+        assert_eq!((info.width, info.height), (64, 48));
+        assert_eq!(
+            (info.bit_depth, info.color_type),
+            (png::BitDepth::Sixteen, png::ColorType::Grayscale)
+        );
+        let mut bytes = vec![0; 2 * 64 * 48];
+        reader.next_frame(&mut bytes).expect("pixels");
+        for (two, value) in bytes.chunks_exact(2).zip(of(name)) {
+            let stored = f32::from(u16::from_be_bytes([two[0], two[1]]));
+            assert!(
+                (stored - (value * steps + plus)).abs() <= 0.51,
+                "{file}: {stored} {value}"
+            );
+        }
+    }
+    for name in ["a.mp4", "a.apng"] {
+        let output = line(&here, &format!("render @/scene.ply -o @/{name} {view}"));
+        refused(&output, 2, "--aov makes channels");
+    }
+}
+
 #[test]
 fn channels_are_the_same_whatever_the_picture_shows_and_holds() {
     let here = folder("aov-other");
@@ -109,7 +171,7 @@ fn channels_are_the_same_whatever_the_picture_shows_and_holds() {
 fn channels_need_an_exr_file() {
     let here = folder("aov-refused");
     for (words, what) in [
-        ("render x.ply -o a.png --aov depth", ".exr"),
+        ("render x.ply -o a.mp4 --aov depth", ".exr"),
         ("render x.ply --json --aov depth", "--output"),
         (
             "render x.ply -o a.exr --aov beauty",

@@ -60,11 +60,24 @@ pub(super) const COUNTS: &str = "--show count makes numbers of splats";
 
 /// Refuses `what` for files that do not hold it: 8 bits end at the colour white.
 pub(super) fn needs_floats(output: Option<&Path>, what: &str) -> Result<(), Failure> {
-    match output.is_none_or(|file| output::ends_in(file, "exr")) {
+    let holds = |file: &Path| output::ends_in(file, "exr") || output::ends_in(file, "npy");
+    match output.is_none_or(holds) {
         true => Ok(()),
         false => Err(Failure::Usage(format!(
-            "{what}, which only .exr files hold: give -o a name that ends in .exr"
+            "{what}, which only .exr and .npy files hold: give -o a name that ends in one of these"
         ))),
+    }
+}
+
+/// Refuses channels beside the colours for what has no place for them.
+pub(super) fn takes_channels(output: Option<&Path>) -> Result<(), Failure> {
+    let is_film = |file: &Path| FilmFormat::from_path(file, false).is_some();
+    match output.is_some_and(|file| file == Path::new(STANDARD) || is_film(file)) {
+        false => Ok(()),
+        true => Err(Failure::Usage(
+            "--aov makes channels, which films and standard output do not hold: give -o a name that ends in .exr, .png or .npy"
+                .into(),
+        )),
     }
 }
 

@@ -16,6 +16,9 @@ use super::{Destination, OutputTarget, PictureJob};
 /// The most memory of pictures that wait to be encoded, bytes.
 const WAITING: u64 = 256 << 20;
 
+/// World units that 16 bits hold in thousandths.
+const MOST_DEPTH: f32 = 65.535;
+
 /// What has become of the pictures that were drawn. They are counted in the order in which they were.
 #[derive(Default)]
 struct Outcome {
@@ -182,7 +185,16 @@ impl<T> Writer<'_, T> {
                 let compression = self.destination.args.png.unwrap_or_default();
                 output::picture(&picture, file, compression).map(|()| true)
             }
-            None => picture.save_with(file, channels).map(|()| true),
+            None => {
+                let deepest = channels.iter().filter(|channel| channel.name == "Z");
+                let mut deepest = deepest.flat_map(|channel| &channel.values);
+                if output::ends_in(file, "png") && deepest.any(|&depth| depth > MOST_DEPTH) {
+                    output::warn_once(format!(
+                        "note: depths beyond {MOST_DEPTH} world units are {MOST_DEPTH} in 16 bits; .npy and .exr hold all"
+                    ));
+                }
+                picture.save_with(file, channels).map(|()| true)
+            }
         });
         Ok(saved?)
     }

@@ -1,4 +1,4 @@
-//! OpenEXR files with channels beside the colours.
+//! Pictures with channels beside the colours.
 
 use std::io::Cursor;
 use std::path::Path;
@@ -8,32 +8,33 @@ use exr::prelude::{
     WritableImage,
 };
 
-use super::{Channel, Picture};
+use image::codecs::png::PngEncoder;
+use image::{ExtendedColorType, ImageEncoder};
+
+use super::file::PictureFormat;
+use super::{Channel, Picture, npy};
 use rara_base::counted::counted;
 use rara_base::error::{Error, Result};
 use rara_base::files::write_atomically;
 
+/// Steps of a world unit in a 16-bit depth.
+const DEPTH: f32 = 1000.0;
+
 impl Picture {
-    /// Writes the picture to an `.exr` file as [`save`](Self::save) does, with more channels beside its own. All are of
-    /// 32-bit floats, and programs that know only colours read those.
+    /// Writes the picture as [`save`](Self::save) does, with more channels beside its own.
+    ///
+    /// An `.exr` file holds them itself, as 32-bit floats; programs that know only colours read those. Beside a `.png` and a `.npy`
+    /// each has a file of its own, called `NAME.depth.png` for the channel Z, `NAME.normal.png` for the three of N, and else as the
+    /// channel is. A `.npy` has the numbers as they are, of rows and columns, and of three for N. A `.png` has 16 bits: depths in
+    /// thousandths of a world unit, N from -1 to 1 as red, green and blue, `weight` from 0 to 1, `count` as it is, and `layer` from
+    /// 1, with 0 where nothing is. What is beyond 16 bits is the most they hold.
     ///
     /// # Errors
-    /// [`Error::Format`] for a name that does not end in `.exr`, [`Error::Io`] if the file can't be written, and
-    /// [`Error::Invalid`] for a channel that has not a number for each pixel, or the name of another one.
+    /// [`Error::Format`] for another ending, [`Error::Io`] if a file can't be written, and [`Error::Invalid`] for a channel that has
+    /// not a number for each pixel, or the name of another one, and for one that has no 16 bits.
     pub fn save_with(&self, path: impl AsRef<Path>, channels: &[Channel]) -> Result<()> {
         let path = path.as_ref();
-        let is_exr = path
-            .extension()
-            .is_some_and(|e| e.eq_ignore_ascii_case("exr"));
-        if !is_exr {
-            let message = "the name of a picture with more channels must end in .exr";
-            return Err(Error::format(path, message));
-        }
-        let colours = ["R", "G", "B", "A"].into_iter().enumerate();
-        let mut all: Vec<(&str, Vec<f32>)> = colours
-            .map(|(at, name)| (name, self.pixels.iter().map(|pixel| pixel[at]).collect()))
-            .collect();
-        for Channel { name, values } in channels {
+        for (at, Channel { name, values }) in channels.iter().enumerate() {
             if values.len() != self.pixels.len() {
                 return Err(Error::Invalid(format!(
                     "channel '{name}' has {} for {}",
@@ -41,11 +42,85 @@ impl Picture {
                     counted(self.pixels.len(), "pixel")
                 )));
             }
-            if all.iter().any(|(other, _)| other == name) {
+            let mut others = ["R", "G", "B", "A"].into_iter();
+            let mut before = channels[..at].iter();
+            if others.any(|other| other == name) || before.any(|other| other.name == *name) {
                 return Err(Error::Invalid(format!("two channels are called '{name}'")));
             }
-            all.push((name, values.clone()));
         }
+        let format = PictureFormat::from_path(path)?;
+        if format == PictureFormat::Exr {
+            return self.save_exr(path, channels);
+        }
+        // The colours come last: where they are, all is.
+        for group in channels.chunk_by(|a, b| group(a) == group(b)) {
+            let bytes = match format {
+                PictureFormat::Npy => self.npy(group),
+                PictureFormat::Png | PictureFormat::Exr => self.png16(group, path)?,
+            };
+            let ending = path.extension().unwrap_or_default().to_string_lossy();
+            let name = match self::group(&group[0]) {
+                "Z" => "depth",
+                "N" => "normal",
+                other => other,
+            };
+            let file = path.with_extension(format!("{name}.{ending}"));
+            write_atomically(&file, |out| out.write_all(&bytes))?;
+        }
+        self.save(path)
+    }
+
+    /// Channels of one file as an array.
+    fn npy(&self, group: &[Channel]) -> Vec<u8> {
+        let mut shape = vec![self.height as usize, self.width as usize];
+        if group.len() > 1 {
+            shape.push(group.len());
+        }
+        npy::encoded(&shape, &interleaved(group, |value| value))
+    }
+
+    /// Channels of one file in 16 bits each.
+    fn png16(&self, group: &[Channel], path: &Path) -> Result<Vec<u8>> {
+        let colour = match group.len() {
+            3 => ExtendedColorType::Rgb16,
+            _ => ExtendedColorType::L16,
+        };
+        let most = f32::from(u16::MAX);
+        let bits: fn(f32) -> f32 = match self::group(&group[0]) {
+            "Z" => |depth| depth * DEPTH,
+            "N" if group.len() == 3 => |part| (0.5 * part + 0.5) * f32::from(u16::MAX),
+            "weight" => |share| share * f32::from(u16::MAX),
+            "count" => |count| count,
+            "layer" => |layer| layer + 1.0,
+            other => {
+                return Err(Error::Invalid(format!(
+                    "channel '{other}' has no form of 16 bits; name an .exr or a .npy"
+                )));
+            }
+        };
+        // `as` clamps, and makes 0 of what is not a number.
+        let values = interleaved(group, |value| bits(value).round().min(most) as u16);
+        let mut bytes = Vec::new();
+        let encoder = PngEncoder::new(&mut bytes);
+        let encoded = encoder.write_image(
+            bytemuck::cast_slice(&values),
+            self.width,
+            self.height,
+            colour,
+        );
+        encoded.map_err(|error| {
+            Error::format(path, format!("the picture could not be encoded: {error}"))
+        })?;
+        Ok(bytes)
+    }
+
+    fn save_exr(&self, path: &Path, channels: &[Channel]) -> Result<()> {
+        let colours = ["R", "G", "B", "A"].into_iter().enumerate();
+        let mut all: Vec<(&str, Vec<f32>)> = colours
+            .map(|(at, name)| (name, self.pixels.iter().map(|pixel| pixel[at]).collect()))
+            .collect();
+        let more = channels.iter();
+        all.extend(more.map(|channel| (&*channel.name, channel.values.clone())));
         let channel =
             |(name, values): (&str, Vec<f32>)| AnyChannel::new(name, FlatSamples::F32(values));
         let list: SmallVec<[AnyChannel<FlatSamples>; 4]> = all.into_iter().map(channel).collect();
@@ -66,6 +141,19 @@ impl Picture {
         })?;
         write_atomically(path, |file| file.write_all(&bytes))
     }
+}
+
+/// What stands before the point in a name: channels with the same stand in one file.
+fn group(channel: &Channel) -> &str {
+    let name = &channel.name;
+    name.split_once('.').map_or(name, |(before, _)| before)
+}
+
+/// The numbers pixel by pixel.
+fn interleaved<T>(group: &[Channel], form: impl Fn(f32) -> T) -> Vec<T> {
+    let pixels = 0..group[0].values.len();
+    let numbers = pixels.flat_map(|at| group.iter().map(move |channel| channel.values[at]));
+    numbers.map(form).collect()
 }
 
 #[cfg(test)]
@@ -105,7 +193,12 @@ mod tests {
         assert_eq!(values, depth.values);
 
         for (name, channels, says) in [
-            ("a.png", vec![], ".exr"),
+            ("a.jpg", vec![], ".exr"),
+            (
+                "b.png",
+                vec![channel("other", vec![0.0; 6])],
+                "no form of 16 bits",
+            ),
             (
                 "b.exr",
                 vec![channel("Z", vec![0.0; 5])],
@@ -118,6 +211,40 @@ mod tests {
             assert!(error.contains(says), "{error}");
         }
         assert_eq!(std::fs::read_dir(&folder).expect("a folder").count(), 1);
+
+        let normal =
+            ["N.X", "N.Y", "N.Z"].map(|name| channel(name, vec![-1.0, 0.0, 1.0, 0.5, 0.0, 0.0]));
+        let [x, y, z] = normal;
+        let layer = channel("layer", vec![-1.0, 0.0, 1.0, 2.0, 3.0, 4.0]);
+        let all = [depth, x, y, z, layer];
+        for (name, files) in [("c.png", 4), ("d.npy", 4)] {
+            let before = std::fs::read_dir(&folder).expect("a folder").count();
+            picture.save_with(folder.join(name), &all).expect("writes");
+            let after = std::fs::read_dir(&folder).expect("a folder").count();
+            assert_eq!(after - before, files, "{name}");
+        }
+        let read = |name: &str| image::open(folder.join(name)).expect("a picture");
+        assert_eq!(
+            *read("c.depth.png").as_luma16().expect("16 bits").as_raw(),
+            [0, 1500, 2500, 65535, 0, 100]
+        );
+        assert_eq!(
+            *read("c.layer.png").as_luma16().expect("16 bits").as_raw(),
+            [0, 1, 2, 3, 4, 5]
+        );
+        let bits = read("c.normal.png").to_rgb16().into_raw();
+        assert_eq!(
+            [bits[0], bits[3], bits[6], bits[9]],
+            [0, 32768, 65535, 49151]
+        );
+        let bytes = std::fs::read(folder.join("d.normal.npy")).expect("an array");
+        assert!(String::from_utf8_lossy(&bytes).contains("'shape': (2, 3, 3, )"));
+        assert_eq!(bytes.len(), 128 + 4 * 18);
+        let bytes = std::fs::read(folder.join("d.depth.npy")).expect("an array");
+        assert_eq!(
+            bytes[128..],
+            *bytemuck::cast_slice::<f32, u8>(&all[0].values)
+        );
         std::fs::remove_dir_all(&folder).expect("ours");
     }
 }

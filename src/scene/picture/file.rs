@@ -10,7 +10,7 @@ use image::{
     DynamicImage, ExtendedColorType, ImageEncoder, ImageFormat, ImageReader, ImageResult, Limits,
 };
 
-use super::{Picture, premultiplied, to_bytes};
+use super::{Picture, npy, premultiplied, to_bytes};
 use crate::camera::Camera;
 use rara_base::counted::counted;
 use rara_base::error::{Error, Result};
@@ -18,15 +18,17 @@ use rara_base::files::write_atomically;
 
 /// The kinds of picture file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum PictureFormat {
+pub(super) enum PictureFormat {
     /// 8-bit RGBA, un-premultiplied.
     Png,
     /// 32-bit float RGBA, premultiplied.
     Exr,
+    /// The same as an array of NumPy, of rows, columns and four.
+    Npy,
 }
 
 impl PictureFormat {
-    fn from_path(path: &Path) -> Result<Self> {
+    pub(super) fn from_path(path: &Path) -> Result<Self> {
         let extension = path
             .extension()
             .unwrap_or_default()
@@ -35,9 +37,10 @@ impl PictureFormat {
         match extension.as_str() {
             "png" => Ok(Self::Png),
             "exr" => Ok(Self::Exr),
+            "npy" => Ok(Self::Npy),
             _ => Err(Error::format(
                 path,
-                "the name of a picture must end in .png (8 bits) or .exr (32-bit float)",
+                "the name of a picture must end in .png (8 bits), .exr or .npy (32-bit float)",
             )),
         }
     }
@@ -59,8 +62,8 @@ pub enum PngCompression {
 
 impl Picture {
     /// Writes the picture to a file whose extension says how: `.png` is 8-bit RGBA, un-premultiplied, `round(255 c)`
-    /// clamped; `.exr` is 32-bit float RGBA, premultiplied, the values as they are. The file appears whole or not at
-    /// all.
+    /// clamped; `.exr` is 32-bit float RGBA, premultiplied, the values as they are, and `.npy` the same as an array of NumPy, of
+    /// rows, columns and four. The file appears whole or not at all.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
         let path = path.as_ref();
         let kind = PictureFormat::from_path(path)?;
@@ -124,6 +127,11 @@ impl Picture {
                 let pixels = bytemuck::cast_slice(&self.pixels);
                 let encoder = OpenExrEncoder::new(Cursor::new(&mut bytes));
                 encoder.write_image(pixels, width, height, ExtendedColorType::Rgba32F)
+            }
+            PictureFormat::Npy => {
+                let shape = [height as usize, width as usize, 4];
+                bytes = npy::encoded(&shape, bytemuck::cast_slice(&self.pixels));
+                Ok(())
             }
         }?;
         Ok(bytes)
@@ -227,6 +235,18 @@ mod tests {
             2,
             "nothing else is left in the folder"
         );
+    }
+
+    #[test]
+    fn arrays_of_numpy_have_rows_of_columns_of_four() {
+        let scratch = Scratch::new("npy");
+        let path = scratch.0.join("a.npy");
+        ramp().save(&path).unwrap();
+        let bytes = std::fs::read(&path).unwrap();
+        let (header, values) = bytes.split_at(128);
+        assert!(header.starts_with(b"\x93NUMPY\x01\0\x76\0{'descr': '<f4', 'fortran_order': False, 'shape': (5, 7, 4, ), }"));
+        assert_eq!(header.last(), Some(&b'\n'));
+        assert_eq!(values, bytemuck::cast_slice::<_, u8>(&ramp().pixels));
     }
 
     #[test]

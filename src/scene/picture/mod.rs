@@ -6,6 +6,8 @@ mod cues;
 #[cfg(feature = "picture")]
 mod file;
 mod light;
+#[cfg(feature = "picture")]
+mod npy;
 
 pub use cues::{Cue, Cues};
 #[cfg(feature = "picture")]

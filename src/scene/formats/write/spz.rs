@@ -50,15 +50,16 @@ pub(super) fn encode(gaussians: &Gaussians, version: u32) -> Result<Vec<u8>> {
             })
         }
         4 => {
+            // Without harmonics there is no stream of them.
+            let runs = &runs[..if degree == 0 { 5 } else { 6 }];
             file.extend([degree, bits, flags, runs.len() as u8]);
             file.extend((HEADER_4 as u32).to_le_bytes());
             file.resize(HEADER_4 as usize, 0);
-            let streams = runs.map(|run| {
-                (
-                    compress_to_vec(&run[..], CompressionLevel::Fastest),
-                    run.len(),
-                )
+            let streams = runs.iter().map(|run| {
+                let stream = compress_to_vec(&run[..], CompressionLevel::Fastest);
+                (stream, run.len())
             });
+            let streams: Vec<_> = streams.collect();
             for (stream, plain) in &streams {
                 file.extend((stream.len() as u64).to_le_bytes());
                 file.extend((*plain as u64).to_le_bytes());

@@ -57,7 +57,7 @@ fn shapes() -> String {
 }
 
 /// The clip that flags make, before the scene is known in which parts of it may lie at shares.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Regions {
     all: Vec<Region>,
     op: ClipOp,

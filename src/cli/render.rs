@@ -101,6 +101,8 @@ struct Shot {
     view: NamedView,
     clip: Clip,
     section: Option<Section>,
+    /// The scene that it shows, where each picture has its own.
+    moment: Option<usize>,
 }
 
 impl Shot {
@@ -135,6 +137,7 @@ impl Pictures {
                     view,
                     clip: clip.clone(),
                     section: None,
+                    moment: None,
                 };
                 views.map(shot).collect()
             }
@@ -144,6 +147,7 @@ impl Pictures {
                     clip: one.clip(),
                     view: one.view.clone(),
                     section: Some(one),
+                    moment: None,
                 };
                 sections.map(shot).collect()
             }
@@ -151,11 +155,45 @@ impl Pictures {
     }
 }
 
+/// A picture of each scene, if there are several: by the same camera, or each by its own.
+fn of_moments(shots: Vec<Shot>, moments: &[(usize, SceneArgs)]) -> Vec<Shot> {
+    if moments.is_empty() {
+        return shots;
+    }
+    let shot = |(at, (number, scenes)): (usize, &(usize, SceneArgs))| {
+        let shot = shots.get(at).unwrap_or(&shots[0]);
+        let file = scenes.places().into_iter().next().unwrap_or_default();
+        let number = match shots.len() {
+            1 => *number,
+            _ => shot.view.number,
+        };
+        let view = NamedView {
+            number,
+            name: file
+                .file_name()
+                .unwrap_or_default()
+                .to_string_lossy()
+                .into_owned(),
+            ..shot.view.clone()
+        };
+        Shot {
+            view,
+            clip: shot.clip.clone(),
+            section: None,
+            moment: Some(at),
+        }
+    };
+    moments.iter().enumerate().map(shot).collect()
+}
+
 /// What the flags mean, before the scene is known.
 struct RenderPlan {
     settings: Settings,
     panorama: Option<Panorama>,
     pictures: Pictures,
+    /// The scenes of the pictures, where each has its own.
+    moments: Vec<(usize, SceneArgs)>,
+    numbers: Vec<usize>,
     /// What makes several pictures, if anything does.
     several: Option<String>,
 }
@@ -168,10 +206,10 @@ impl Render {
     /// What a run of many commands has to know before it draws any picture.
     pub(super) fn plan(mut self) -> Result<Plan, Failure> {
         let meant = self.meant()?;
-        let numbers = meant.pictures.numbers();
+        let numbers = &meant.numbers;
         let output = self.output.as_deref();
         let several = meant.several.as_deref();
-        let destination = (self.pictures).destination(output, (&numbers, several), None)?;
+        let destination = (self.pictures).destination(output, (numbers, several), None)?;
         let size = match (&meant.panorama, &meant.pictures) {
             (Some(panorama), _) => panorama.size(),
             (None, Pictures::Views(Views::Given(views), _)) if !views.is_empty() => {
@@ -179,10 +217,14 @@ impl Render {
             }
             _ => self.frame.camera.chosen_size(),
         };
-        Ok(destination.plan((&self.scenes, self.frame.device.meant()), &numbers, size))
+        Ok(destination.plan((&self.scenes, self.frame.device.meant()), numbers, size))
     }
 
     fn meant(&mut self) -> Result<RenderPlan, Failure> {
+        let moments = self.scenes.moments()?;
+        if let Some((_, first)) = moments.first() {
+            self.scenes = first.clone();
+        }
         let settings = self.frame.settings.meant()?;
         self.slice.check(&settings)?;
         let sections = self.section.meant(&self.frame.camera, &self.frame.clip)?;
@@ -204,7 +246,27 @@ impl Render {
                 Pictures::Views(views, clip)
             }
         };
-        let several = self.several(pictures.numbers().len());
+        let numbers = pictures.numbers();
+        let mut several = self.several(numbers.len());
+        let numbers = match (moments.len(), numbers.len()) {
+            (0, _) => numbers,
+            (_, _) if matches!(pictures, Pictures::Sections(_)) => {
+                return Err(Failure::Usage(
+                    "--section cuts one scene, and these are several: name one of them".into(),
+                ));
+            }
+            (_, 1) => {
+                several = Some("these scenes make".into());
+                moments.iter().map(|(number, _)| *number).collect()
+            }
+            (scenes, pictures) if scenes == pictures => numbers,
+            (scenes, pictures) => {
+                return Err(Failure::Usage(format!(
+                    "there are {scenes} scenes and {pictures} cameras: give one camera for all, or as many as scenes (--frames \
+                     {scenes} of a path)"
+                )));
+            }
+        };
         if !self.aov.is_empty() {
             pictures::takes_channels(self.output.as_deref())?;
         }
@@ -215,6 +277,8 @@ impl Render {
             settings,
             panorama,
             pictures,
+            moments,
+            numbers,
             several,
         })
     }
@@ -229,16 +293,17 @@ impl Render {
             settings,
             panorama,
             pictures,
+            moments,
+            numbers,
             several,
         } = self.meant()?;
-        let numbers = pictures.numbers();
         let several = several.as_deref();
         let output = self.output.as_deref();
         let destination = (self.pictures).destination(output, (&numbers, several), order)?;
         let settings = destination.settings(settings);
 
         let profile = self.profile.begin(|| destination.files(&numbers))?;
-        let pictures = (pictures, several.is_some());
+        let pictures = (pictures, &moments[..], several.is_some());
         let done = self.draw(
             (&profile, kept),
             pictures,
@@ -262,16 +327,17 @@ impl Render {
     fn draw(
         &self,
         (profile, kept): (&Profile, &mut SessionCache),
-        (pictures, several): (Pictures, bool),
+        (pictures, moments, several): (Pictures, &[(usize, SceneArgs)], bool),
         (panorama, destination): (Option<Panorama>, &Destination<'_>),
         settings: &Settings,
     ) -> Result<(), Failure> {
         let (device, sh) = (&self.frame.device, settings.precision.sh);
         let session_of = (device, &self.profile, sh);
         let (mut place, mut loaded) = kept.load(profile, &self.scenes, &session_of)?;
-        pictures.regions().settle(&mut loaded)?;
+        let regions = pictures.regions().clone();
+        regions.settle(&mut loaded)?;
         let scene = loaded.scene();
-        let mut shots = pictures.shots(&scene)?;
+        let mut shots = of_moments(pictures.shots(&scene)?, moments);
         if let (Some(_), Some(up)) = (&panorama, self.horizon()) {
             for Shot { view, .. } in &mut shots {
                 view.camera = panorama::levelled(view.camera, up);
@@ -306,7 +372,14 @@ impl Render {
             None => self.repeat(planned.len() * faces),
         };
         let mut slicer = Slicer::new(&self.slice, &scene, self.frame.device.meant());
+        let mut shown = 0;
         let written = destination.draw("rendering", profile, (&planned, size), |one| {
+            if let Some(at) = one.what.moment.filter(|at| *at != shown) {
+                let mut next = profile.span("load", || moments[at].1.load())?;
+                regions.settle(&mut next)?;
+                session.headless.load_as(next.scene(), sh)?;
+                shown = at;
+            }
             if let Some(panorama) = &panorama {
                 return self.surroundings(profile, &mut session, (panorama, one), settings, repeat);
             }
@@ -317,6 +390,7 @@ impl Render {
                 view,
                 clip,
                 section,
+                moment: _,
             } = shot;
             let sliced = shot.cut().filter(|_| self.slice.is_shown());
             let section = section.as_ref().filter(|_| sliced.is_none());
@@ -348,6 +422,9 @@ impl Render {
             Ok(drawn)
         })?;
         slicer.close()?;
+        if destination.order().is_some() && !moments.is_empty() {
+            return Ok(session.headless.close()?); // what is on the device is no longer what was loaded
+        }
         if destination.order().is_some() {
             return Ok(kept.keep(place, loaded, session)?);
         }

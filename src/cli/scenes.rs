@@ -9,6 +9,7 @@ use rara::Error;
 use super::failure::Failure;
 use super::json_kind::JsonKind;
 use super::output::say;
+use super::pattern::filled;
 use super::reading::{self, Watch};
 use super::scene_file::{self, LayerEntry};
 use super::scene_layers::SceneLayers;
@@ -19,7 +20,7 @@ use rara::scene::Format;
 fn files() -> String {
     format!(
         "Scene files or a folder; - is standard input\n\nFormats: {}, or a folder of SOG; or a folder that training left, of \
-         which the last iteration counts. Several files are the layers of one scene. A layer has the name of its file, or a \
+         which the last iteration counts. Several files are the layers of one scene. rara render takes scene_{{:03}}.ply as the scenes of a film, one a picture. A layer has the name of its file, or a \
          name given as NAME=FILE. A .json file lists layers: \
          {{\"layers\":[{{\"path\":\"skin.ply\",\"name\":\"skin\",\"opacity\":0.5,\"visible\":true, \
          \"antialiased\":true,\"low_pass\":0.3,\"position\":[x,y,z],\"rotation\":[w,x,y,z],\"scale\":s or [x,y,z],\"clip\":{{...}} or \
@@ -29,7 +30,7 @@ fn files() -> String {
 }
 
 /// The flags that name the scene.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Layers")]
 pub(super) struct SceneArgs {
     /// Scene files or a folder; - is standard input
@@ -77,6 +78,47 @@ impl SceneArgs {
             select::add(&mut entries, text)?;
         }
         Ok(entries)
+    }
+
+    /// The scenes of a film, by number, where names of files have braces for it and there are such files; none where no name has.
+    pub(super) fn moments(&self) -> Result<Vec<(usize, Self)>, Failure> {
+        /// The greatest number that is looked for.
+        const MOST: usize = 99_999;
+        let is_pattern = |file: &&PathBuf| {
+            !file.exists() && filled(file, 0, "{name}") != filled(file, 1, "{name}")
+        };
+        let Some(pattern) = self.files.iter().find(is_pattern) else {
+            return Ok(Vec::new());
+        };
+        let numbered = |number: usize| {
+            let fill = |file: &PathBuf| match is_pattern(&file) {
+                true => filled(file, number, "{name}"),
+                false => file.clone(),
+            };
+            let files: Vec<_> = self.files.iter().map(fill).collect();
+            let is_there = |file: &PathBuf| {
+                let named = entries(std::slice::from_ref(file)).unwrap_or_default();
+                named.iter().all(|entry| entry.path.exists()) && !named.is_empty()
+            };
+            let are_there = files.iter().all(is_there);
+            are_there.then(|| {
+                (
+                    number,
+                    Self {
+                        files,
+                        ..self.clone()
+                    },
+                )
+            })
+        };
+        let found: Vec<_> = (0..=MOST).filter_map(numbered).collect();
+        match found.is_empty() {
+            false => Ok(found),
+            true => Err(Failure::Usage(format!(
+                "{}: there is no file of that name with a number from 0 to {MOST} in place of the braces",
+                pattern.display()
+            ))),
+        }
     }
 
     /// The places of the scenes: what was typed, or the files that it names.

@@ -12,7 +12,7 @@ use super::training;
 use super::values::name;
 
 /// What flags say of how the scene was trained.
-#[derive(Debug, Default, Args)]
+#[derive(Debug, Clone, Default, Args)]
 pub(super) struct TrainedOptions {
     /// Whether the scene was trained antialiased: on, off or auto
     ///

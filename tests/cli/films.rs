@@ -5,7 +5,7 @@ use std::io::BufReader;
 use std::path::Path;
 
 use super::paths::frames;
-use super::{document, done, folder, line, line_with, refused, scene, stderr};
+use super::{document, done, folder, line, line_with, refused, scene, stderr, stdout};
 
 /// The pictures of a PNG, of which an animated one has several: 8-bit RGBA each.
 pub(super) fn decoded(file: &Path) -> Vec<Vec<u8>> {
@@ -91,6 +91,61 @@ fn a_reader_that_stops_ends_the_film() {
     stdout.read_exact(&mut [0; 64 * 64 * 4]).expect("a picture");
     drop(stdout);
     assert!(child.wait().expect("it ends").success());
+}
+
+/// Numbered scenes are the pictures of a film, each as it would be drawn by itself.
+#[test]
+fn numbered_scenes_are_a_film() {
+    let here = folder("film-scenes");
+    scene(&here);
+    for (number, scale) in [(3, 1.0), (4, 0.7), (10, 0.4)] {
+        let words = format!("convert @/scene.ply -o @/part_{number:03}.ply --scale {scale}");
+        done(line(&here, &words));
+    }
+    let view = "--eye 2,-1,-4 --target 0,0,0 --size 48x32 --repeat 1";
+    let film = done(line(
+        &here,
+        &format!("render @/part_{{:03}}.ply {view} -o - --format rgba"),
+    ));
+    let alone = |number: u32| {
+        let words = format!("render @/part_{number:03}.ply {view} -o - --format rgba");
+        done(line(&here, &words)).stdout
+    };
+    let all = [alone(3), alone(4), alone(10)];
+    assert!(all[0] != all[1] && all[1] != all[2]);
+    assert!(film.stdout == all.concat());
+    // Pictures have the numbers of their scenes, and names.
+    let words =
+        format!("render @/part_{{:03}}.ply {view} -o @/p_{{:02}}_{{name}}.png --json-lines");
+    let lines = stdout(&done(line(&here, &words)));
+    assert_eq!(lines.lines().count(), 3);
+    for name in [
+        "p_03_part_003.png",
+        "p_04_part_004.png",
+        "p_10_part_010.png",
+    ] {
+        assert!(here.join(name).is_file(), "{name}");
+    }
+    let around = "render @/part_{:03}.ply --path orbit --size 48x32 -o - --format rgba --frames";
+    let orbit = done(line(&here, &format!("{around} 3")));
+    assert_eq!(orbit.stdout.len(), 3 * 4 * 48 * 32);
+    for (words, says) in [
+        (format!("{around} 4"), "3 scenes and 4 cameras"),
+        (
+            "render @/part_{:03}.ply -o @/a_{}.png --section z=0".into(),
+            "--section cuts one scene",
+        ),
+        (
+            format!("render @/part_{{:03}}.ply {view} -o @/one.png"),
+            "these scenes make several pictures",
+        ),
+        (
+            format!("render @/none_{{}}.ply {view} -o @/a.apng"),
+            "none_{}.ply: there is no file of that name",
+        ),
+    ] {
+        refused(&line(&here, &words), 2, says);
+    }
 }
 
 /// Makes a program that is found as ffmpeg in `here`, and returns the PATH.

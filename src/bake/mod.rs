@@ -18,6 +18,7 @@ use rara_base::error::{Error, Result};
 use rara_base::parallel::{in_parallel, threads};
 use rara_base::setters;
 use rara_scene::clip::Clip;
+use rara_scene::placement::Placement;
 use rara_scene::settings::{Mode, Settings};
 use rara_scene::{Gaussians, Layer};
 
@@ -135,7 +136,8 @@ pub struct BakedGaussians {
 /// [`Error::Invalid`] for a number of children that is not 1, 2 or 3, for a `sigma` that is not above zero, for a `leave`
 /// below zero, and for more Gaussians than can be numbered.
 pub fn bake(gaussians: &Gaussians, clip: &Clip, settings: &BakeSettings) -> Result<BakedGaussians> {
-    bake_faded(gaussians, 1.0, clip, settings)
+    let placement = Placement::IDENTITY.of_origin(gaussians.origin());
+    bake_faded(gaussians, 1.0, &clip.in_scene(&placement), settings)
 }
 
 /// Bakes a clip into a layer of a scene: its own, or where it has none, `clip`. The Gaussians are in the layer's own
@@ -150,7 +152,7 @@ pub fn bake_layer(
     settings: &BakeSettings,
 ) -> Result<BakedGaussians> {
     let state = layer.state();
-    let clip = layer.clip().unwrap_or(clip).in_scene(&state.placement);
+    let clip = layer.clip().unwrap_or(clip).in_scene(&layer.placement());
     bake_faded(layer.gaussians(), state.opacity, &clip, settings)
 }
 
@@ -220,9 +222,10 @@ fn fates(region: &Region<'_>, count: usize, children: usize) -> Vec<Fate> {
 }
 
 fn collect(gaussians: &Gaussians, fates: &[Fate]) -> BakedGaussians {
-    let mut baked = BakedGaussians::default();
-    baked.gaussians.set_sh_degree(gaussians.sh_degree());
-    baked.gaussians.set_trained_as(gaussians);
+    let mut baked = BakedGaussians {
+        gaussians: gaussians.empty_like(),
+        ..BakedGaussians::default()
+    };
     let counts = &mut baked.counts;
     for (index, fate) in fates.iter().enumerate() {
         let children = match fate {

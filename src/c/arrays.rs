@@ -46,6 +46,8 @@ pub struct RaraGaussianArrays {
     pub antialiased: vk::Bool32,
     /// The low-pass that they were trained with, square pixels: see rara_gaussians_set_low_pass. Default: 0, which is 0.3.
     pub low_pass: f32,
+    /// What the positions are relative to, world units, for scenes far from zero. Default: 0, 0, 0.
+    pub origin: [f64; 3],
 }
 
 versioned!(RaraGaussianArrays);
@@ -97,6 +99,7 @@ impl RaraGaussianArrays {
         let sh = array(self.sh, self.sh_stride, "sh");
         let floats = 3 * coefficients;
         Ok(GaussianArrays {
+            origin: self.origin.into(),
             positions: vectors(array(self.positions, self.position_stride, "position"))?,
             scales: vectors(array(self.scales, self.scale_stride, "scale"))?,
             rotations: rotations.copied(4, 1, |to, v| to.push(Quat::from_slice(v)))?,

@@ -53,6 +53,8 @@ pub struct RaraGaussiansInfo {
     pub antialiased: vk::Bool32,
     /// The low-pass that they are drawn with, square pixels: see rara_gaussians_set_low_pass.
     pub low_pass: f32,
+    /// What the scene's positions are relative to: zero unless it is far from there, as in coordinates of a map.
+    pub origin: [f64; 3],
 }
 
 versioned!(RaraGaussiansInfo);
@@ -140,6 +142,7 @@ pub unsafe extern "C" fn rara_gaussians_info(
             bounds_max: bounds.max.into(),
             antialiased: gaussians.is_antialiased().into(),
             low_pass: gaussians.low_pass(),
+            origin: gaussians.origin().into(),
         };
         write(info, info_size, &found, "info")
     })

@@ -131,7 +131,11 @@ impl Convert {
         }
         let options = SaveOptions::default().spz_version(self.spz_version);
         document.clamped = scene::save_with(&self.output, &whole, &options)?;
-        if let Some(note) = trained::lost(format, whole.training()) {
+        let notes = [
+            trained::lost(format, whole.training()),
+            lost_origin(format, &whole),
+        ];
+        for note in notes.into_iter().flatten() {
             say(format_args!("warning: {note}"));
             document.notes.push(note);
         }
@@ -176,7 +180,7 @@ impl Convert {
         let least = self.min_opacity.unwrap_or(0.0);
         let mut part_of = Vec::with_capacity(gaussians.len());
         for (position, own) in gaussians.positions().iter().zip(gaussians.opacities()) {
-            let is_clipped = !clip.keeps(position.as_dvec3());
+            let is_clipped = !clip.keeps(gaussians.origin() + position.as_dvec3());
             let is_faint = !is_clipped && *own < least;
             document.clipped += usize::from(is_clipped);
             document.faint += usize::from(is_faint);
@@ -231,5 +235,17 @@ impl Convert {
             counted(document.bytes, "byte")
         ));
         Ok(())
+    }
+}
+/// What to say where a file of this format cannot hold what the centres are counted from.
+fn lost_origin(format: scene::Format, gaussians: &rara::Gaussians) -> Option<String> {
+    let [x, y, z] = gaussians.origin().to_array();
+    match format {
+        _ if [x, y, z] == [0.0; 3] => None,
+        scene::Format::Ply | scene::Format::Gltf => None,
+        _ => Some(format!(
+            "{format} holds centres near zero only, so they are written as counted from ({x}, {y}, {z}); draw the file with \
+             --place move:{x},{y},{z}"
+        )),
     }
 }

@@ -91,6 +91,8 @@ struct LayerFacts {
     alpha_max: f32,
     /// Whether its colours are linear light.
     linear: bool,
+    /// What its centres are counted from, its own units; zero unless it is far from there.
+    origin: [f64; 3],
     clipped: bool,
     /// What else there is to say of it, where it is one of several.
     #[serde(rename = "statistics", skip_serializing_if = "Option::is_none")]
@@ -109,6 +111,7 @@ impl LayerFacts {
             visible: layer.state.visible,
             antialiased: layer.gaussians.is_antialiased(),
             low_pass: layer.gaussians.low_pass(),
+            origin: layer.gaussians.origin().into(),
             sort_by: values::name(layer.gaussians.training().sort_by),
             alpha_max: layer.gaussians.training().alpha_max,
             linear: layer.gaussians.training().linear,
@@ -154,7 +157,7 @@ impl Facts {
         };
         let all = 0..gaussians.len();
         let ratio = |long: f32, short: f32| if long == short { 1.0 } else { long / short };
-        let centres = gaussians.positions().iter().map(|p| p.as_dvec3());
+        let centres = all.clone().map(|index| gaussians.centre(index));
         let empty = if gaussians.is_empty() {
             DVec3::ZERO
         } else {
@@ -275,6 +278,10 @@ fn table(document: &InfoJson) -> Vec<String> {
             "colours        {colours}, alpha up to {}",
             layer.alpha_max
         ));
+        if layer.origin != [0.0; 3] {
+            let [x, y, z] = layer.origin;
+            lines.push(format!("origin         ({x}, {y}, {z})"));
+        }
     }
     lines.push(format!("SH degree      {}", document.sh_degree));
     lines.push(format!("repaired       {}", grouped(document.repaired)));

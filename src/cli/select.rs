@@ -135,12 +135,12 @@ pub(super) fn joined(layers: Vec<LayerRemains>) -> Gaussians {
     }
     places.sort_unstable();
     let degree = layers.iter().map(|layer| layer.gaussians.sh_degree()).max();
-    joined.set_sh_degree(degree.unwrap_or(0));
     // All are alike: see trained::check_alike.
     let mut all = layers.iter().map(|layer| &layer.gaussians);
     if let Some(first) = all.find(|layer| !layer.is_empty()) {
-        joined.set_trained_as(first);
+        joined = first.empty_like();
     }
+    joined.set_sh_degree(degree.unwrap_or(0));
     let mut sh = vec![0.0; 3 * joined.sh_coefficients()];
     for (_, at, index) in places {
         let from = &layers[at].gaussians;
@@ -148,7 +148,7 @@ pub(super) fn joined(layers: Vec<LayerRemains>) -> Gaussians {
         sh.fill(0.0);
         sh[..own.len()].copy_from_slice(own);
         joined.push(
-            from.positions()[index],
+            (from.positions()[index].as_dvec3() + from.shift_to(&joined)).as_vec3(),
             from.scales()[index],
             from.rotations()[index],
             from.opacities()[index],

@@ -148,7 +148,7 @@ impl<'a> Slicer<'a> {
     fn cross_sections(&self, plane: &Plane) -> Vec<Gaussians> {
         let layers = self.scene.layers().iter();
         let section = |layer: &Layer<'_>| {
-            cross_section(layer.gaussians(), &plane.in_scene(&layer.state().placement))
+            cross_section(layer.gaussians(), &plane.in_scene(&layer.placement()))
         };
         layers.map(section).collect()
     }

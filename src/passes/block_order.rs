@@ -238,6 +238,7 @@ mod tests {
             (state >> 8) as f32 / (1 << 24) as f32
         };
         let arrays = GaussianArrays {
+            origin: DVec3::ZERO,
             positions: (0..count)
                 .map(|_| Vec3::new(next(), next(), next()))
                 .collect(),

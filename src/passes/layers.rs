@@ -45,7 +45,7 @@ impl Layers {
                 ..bytemuck::Zeroable::zeroed()
             };
             if layer.is_visible() {
-                let placement = &layer.state.placement;
+                let placement = &layer.placement();
                 data.views = [layer_view(&camera.in_scene(placement), placement.scale())];
                 let clip = camera.sees_of(layer.clip().unwrap_or(clip))?;
                 // Quadrics are packed relative to a point among the layer's own centres.
@@ -135,7 +135,7 @@ pub(super) fn boxes<'a>(
 ) -> impl Iterator<Item = (Camera, [Vec3; 2], f64)> {
     let visible = scene.iter().filter(|layer| layer.is_visible());
     visible.map(move |layer| {
-        let placement = &layer.state.placement;
+        let placement = &layer.placement();
         (camera.in_scene(placement), layer.corners, placement.scale())
     })
 }

@@ -120,7 +120,7 @@ struct Eye<'a> {
 
 impl<'a> Eye<'a> {
     fn new(camera: &'a Camera, whole: &'a Camera, layer: &SceneLayer) -> Self {
-        let placement = &layer.state.placement;
+        let placement = &layer.placement();
         let own = camera.in_scene(placement);
         Self {
             camera,

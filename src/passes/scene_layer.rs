@@ -4,13 +4,14 @@ use std::borrow::Cow;
 use std::collections::HashMap;
 
 use bytemuck::cast_slice;
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 use crate::passes::{block_order, sh_storage};
 use crate::types::{Block, Gaussian};
 use rara_base::error::{Error, Result, shortened};
 use rara_base::limits;
 use rara_scene::clip::Clip;
+use rara_scene::placement::Placement;
 use rara_scene::precision::ShFormat;
 use rara_scene::{
     Bounds, GaussianArrays, Gaussians, Layer, LayerState, Numbers, Scene, Training, sh_coefficients,
@@ -28,6 +29,8 @@ pub struct SceneLayer {
     box_around: [Vec3; 2],
     /// The same of the set that the layer is a part of, or its own: what depends on it is alike in all parts of a set.
     pub(super) corners: [Vec3; 2],
+    /// What their positions are relative to, in the layer's units.
+    origin: DVec3,
     /// How its Gaussians were trained.
     pub(super) training: Training,
     pub(super) state: LayerState,
@@ -44,6 +47,7 @@ impl SceneLayer {
             first_block,
             box_around: corners,
             corners,
+            origin: layer.gaussians().origin(),
             training: layer.gaussians().training(),
             state: layer.state(),
             clip: layer.clip().cloned(),
@@ -65,6 +69,11 @@ impl SceneLayer {
         self.training
     }
 
+    /// The placement of its positions in that frame.
+    pub(super) fn placement(&self) -> Placement {
+        self.state.placement.of_origin(self.origin)
+    }
+
     /// How the next frame that is configured shows it.
     pub fn state(&self) -> LayerState {
         self.state
@@ -77,9 +86,7 @@ impl SceneLayer {
 
     /// True when the frame's clip or the own ones keep the same of both, in the same place of each.
     pub(super) fn is_clipped_like(&self, other: &Self) -> bool {
-        self.is_visible()
-            && self.state.placement == other.state.placement
-            && self.clip == other.clip
+        self.is_visible() && self.placement() == other.placement() && self.clip == other.clip
     }
 
     /// True when anything of it shows; a layer that is faint enough shows in no pixel.

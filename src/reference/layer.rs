@@ -35,8 +35,8 @@ pub fn layers<'a, T: Real>(
         let state = layer.state();
         LayerView {
             gaussians: faded(layer),
-            view: ViewTransform::in_layer(camera, &state.placement),
-            clip: seen_of(layer.clip().unwrap_or(clip)).in_scene(&state.placement),
+            view: ViewTransform::in_layer(camera, &layer.placement()),
+            clip: seen_of(layer.clip().unwrap_or(clip)).in_scene(&layer.placement()),
             numbers,
             visible: state.visible,
         }

@@ -68,7 +68,7 @@ impl<'a> PixelRays<'a> {
     /// is not a number if that is nothing.
     pub fn mean_depth(&self, scene: &Gaussians, index: usize) -> f64 {
         let camera = self.camera;
-        let centre = camera.rotation * (scene.positions()[index].as_dvec3() - camera.eye);
+        let centre = camera.rotation * (scene.centre(index) - camera.eye);
         let [visible, _, depth] = self.sums(scene, index);
         centre.z + depth / visible
     }
@@ -149,7 +149,7 @@ impl Pixel {
         position: DVec2,
         bundle: Bundle,
     ) -> Self {
-        let centre = scene.positions()[index].as_dvec3();
+        let centre = scene.centre(index);
         let view = camera.rotation * (centre - camera.eye);
         let axes = DMat3::from_quat(scene.rotations()[index].as_dquat().normalize());
         let focal = DVec2::new(camera.fx, camera.fy);

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use bytemuck::allocation::try_zeroed_vec;
-use glam::{DVec4, Quat, Vec3};
+use glam::{DVec3, DVec4, Quat, Vec3};
 
 use super::failure::Failure;
 use super::parts::keep;
@@ -69,6 +69,7 @@ pub(super) struct Rows<'a> {
     opacities: &'a mut [f32],
     sh: &'a mut [f32],
     sh_degree: u32,
+    origin: [f64; 3],
     properties: Vec<(&'a mut [f64], bool)>,
     report: LoadReport,
     dropped: Vec<u64>,
@@ -94,6 +95,12 @@ impl Assembler {
             dropped: Vec::new(),
             stored: ColumnForm::Logarithms,
         })
+    }
+
+    /// The same for centres about an origin, from which they are counted.
+    pub(super) fn about(mut self, origin: DVec3) -> Self {
+        self.arrays.origin = origin;
+        self
     }
 
     /// The same for rows that store scales and opacities in another way.
@@ -153,7 +160,7 @@ impl Assembler {
     /// The places of all rows, `each` at a time.
     fn split(&mut self, each: usize) -> impl Iterator<Item = Rows<'_>> {
         let (arrays, stored) = (&mut self.arrays, self.stored);
-        let sh_degree = arrays.sh_degree;
+        let (sh_degree, origin) = (arrays.sh_degree, arrays.origin.to_array());
         let properties = self.properties.iter_mut();
         let mut properties: Vec<_> = properties
             .map(|property| (property.values.chunks_mut(each), property.single))
@@ -174,6 +181,7 @@ impl Assembler {
                 opacities,
                 sh,
                 sh_degree,
+                origin,
                 properties: properties
                     .iter_mut()
                     .map(|(values, single)| (values.next().unwrap_or_default(), *single))
@@ -225,8 +233,8 @@ impl Rows<'_> {
         let mut single = [0.0; SLOTS];
         let single = &mut single[..used.len()];
         let mut is_finite = true;
-        for (to, &value) in single.iter_mut().zip(used) {
-            *to = value as f32;
+        for (slot, (to, &value)) in single.iter_mut().zip(used).enumerate() {
+            *to = (value - self.origin.get(slot).unwrap_or(&0.0)) as f32;
             is_finite &= to.is_finite();
         }
         let unusable =

@@ -3,6 +3,7 @@
 
 use glam::DVec3;
 
+use super::placed::FAR;
 use super::{Layer, Scene};
 
 /// Share of the centres that may lie beyond each end. A smaller one lets a scanner's far shell decide how the scene
@@ -63,7 +64,7 @@ pub fn extent_along<'a>(scene: impl Into<Scene<'a>>, normal: DVec3) -> (f64, f64
     let scene = scene.into();
     let mut along: Vec<f64> = Vec::new();
     for layer in visible(&scene) {
-        let placement = layer.state().placement;
+        let placement = layer.placement();
         // normal . to_world(p), which is linear in p.
         let start = normal.dot(placement.position());
         let step = placement.scale() * (placement.rotation().inverse() * normal);
@@ -103,7 +104,9 @@ fn median_size(scene: &Scene<'_>) -> f64 {
 
 /// Adds `by` at both ends, and in any case so much that the interval isn't empty (a flat or a one-point scene).
 fn widened(low: f64, high: f64, by: f64) -> (f64, f64) {
-    let least = 1e-6 * (1.0 + low.abs().max(high.abs()));
+    // What is farther away is counted from an origin, in double precision.
+    let size = low.abs().max(high.abs());
+    let least = (1e-6 * (1.0 + size.min(FAR))).max(1e-12 * size);
     let by = by.max(least);
     (low - by, high + by)
 }

@@ -11,7 +11,8 @@ use rara_base::limits::ALPHA_MIN_INVERSE;
 ///
 /// On the plane `n.x + d = 0` the exponent of a Gaussian of mean `mu` and covariance `S` is that of the Gaussian of mean
 /// `mu - g S n / v` and covariance `S - S n (S n)^T / v`, plus `g^2 / 2 v`, with the centre's distance `g = n.mu + d` and the
-/// variance `v = n.S n` along the normal (the update of a Kalman filter that has observed the distance without noise).
+/// variance `v = n.S n` along the normal (the update of a Kalman filter that has observed the distance without noise). The plane
+/// is relative to the Gaussians' [origin](Gaussians::origin).
 ///
 /// Drawn by a camera that faces the plane, with [`Show::Mean`](crate::settings::Show::Mean), it is the slice that the plane makes.
 ///
@@ -29,9 +30,7 @@ use rara_base::limits::ALPHA_MIN_INVERSE;
 /// # Ok::<(), rara::Error>(())
 /// ```
 pub fn cross_section(gaussians: &Gaussians, plane: &Plane) -> Gaussians {
-    let mut on_plane = Gaussians::default();
-    on_plane.set_sh_degree(gaussians.sh_degree());
-    on_plane.set_trained_as(gaussians);
+    let mut on_plane = gaussians.empty_like();
     let normal = plane.normal();
     let first = normal.any_orthonormal_vector();
     let across = [first, normal.cross(first)];

@@ -1,7 +1,7 @@
 //! The scene in memory: one array per attribute, as the file had them but in the units the renderer works in.
 
 use bytemuck::allocation::try_zeroed_vec;
-use glam::{Quat, Vec3};
+use glam::{DVec3, Quat, Vec3};
 
 use super::training::Training;
 use rara_base::counted::counted;
@@ -24,7 +24,9 @@ pub struct Gaussians(GaussianArrays);
 /// The arrays that [`Gaussians`] are made of, all of the same length except [`sh`](Self::sh).
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct GaussianArrays {
-    /// Centres, world units.
+    /// What the centres are relative to: see [`Gaussians::origin`].
+    pub origin: DVec3,
+    /// Centres, world units from the origin.
     pub positions: Vec<Vec3>,
     /// Standard deviations along the Gaussian's own axes, world units (linear, not logarithms). Zero is allowed.
     pub scales: Vec<Vec3>,
@@ -98,7 +100,29 @@ impl Gaussians {
         self.0.positions.is_empty()
     }
 
-    /// Centres, world units.
+    /// What the centres are relative to, world units: they lie at `origin + position`. It is zero where single precision holds
+    /// them; far from zero, as in coordinates of a map, it has what they share in double precision. Whatever takes a
+    /// [layer](crate::Layer) counts it in; [`centre`](Self::centre) has both. Loaders find it.
+    pub fn origin(&self) -> DVec3 {
+        self.0.origin
+    }
+
+    /// The centre of one, world units.
+    pub fn centre(&self, index: usize) -> DVec3 {
+        self.0.origin + self.0.positions[index].as_dvec3()
+    }
+
+    /// Moves all Gaussians at once, by no rounding: see [`origin`](Self::origin).
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] where it is not finite.
+    pub fn set_origin(&mut self, origin: DVec3) -> Result<()> {
+        check_origin(origin).map_err(Error::Invalid)?;
+        self.0.origin = origin;
+        Ok(())
+    }
+
+    /// Centres, world units from the [origin](Self::origin).
     pub fn positions(&self) -> &[Vec3] {
         &self.0.positions
     }
@@ -165,13 +189,25 @@ impl Gaussians {
         Ok(())
     }
 
-    /// Says that they were trained as others were.
+    /// An empty set of the degree, the training and the origin of this one.
     #[doc(hidden)]
-    pub fn set_trained_as(&mut self, other: &Gaussians) {
-        self.train(other.0.training);
+    pub fn empty_like(&self) -> Self {
+        Self(GaussianArrays {
+            sh_degree: self.0.sh_degree,
+            training: self.0.training,
+            origin: self.0.origin,
+            ..GaussianArrays::default()
+        })
+    }
+
+    /// What is added to positions that are relative to this origin, to make them relative to that of others.
+    #[doc(hidden)]
+    pub fn shift_to(&self, other: &Gaussians) -> DVec3 {
+        self.0.origin - other.0.origin
     }
 
     /// Says that they were trained in a way that can be drawn.
+    #[cfg_attr(not(feature = "formats"), allow(dead_code))]
     pub(super) fn train(&mut self, training: Training) {
         self.0.training = training;
     }
@@ -247,7 +283,8 @@ impl Gaussians {
     /// [trained](Self::training) in one way: the first Gaussians say in which, and others are drawn like them.
     pub fn append(&mut self, other: &Gaussians) {
         if self.is_empty() {
-            self.set_trained_as(other);
+            self.0.training = other.0.training;
+            self.0.origin = other.0.origin;
         }
         let degree = if self.is_empty() {
             other.0.sh_degree
@@ -255,7 +292,9 @@ impl Gaussians {
             self.0.sh_degree.max(other.0.sh_degree)
         };
         self.set_sh_degree(degree);
-        self.0.positions.extend_from_slice(&other.0.positions);
+        let shift = other.shift_to(self);
+        let moved = |position: &Vec3| (position.as_dvec3() + shift).as_vec3();
+        self.0.positions.extend(other.0.positions.iter().map(moved));
         self.0.scales.extend_from_slice(&other.0.scales);
         self.0.rotations.extend_from_slice(&other.0.rotations);
         self.0.opacities.extend_from_slice(&other.0.opacities);
@@ -315,6 +354,13 @@ impl Gaussians {
     }
 }
 
+fn check_origin(origin: DVec3) -> std::result::Result<(), String> {
+    match origin.is_finite() {
+        true => Ok(()),
+        false => Err(format!("the origin is {origin}, which is not finite")),
+    }
+}
+
 impl GaussianArrays {
     /// Arrays of zeros for exactly `count`, of which memory is taken only where they are written; `None` if there is not
     /// enough.
@@ -322,6 +368,7 @@ impl GaussianArrays {
     pub(super) fn zeroed(count: usize, sh_degree: u32) -> Option<Self> {
         let numbers = count.checked_mul(3 * sh_coefficients(sh_degree))?;
         Some(Self {
+            origin: DVec3::ZERO,
             positions: try_zeroed_vec(count).ok()?,
             scales: try_zeroed_vec(count).ok()?,
             rotations: try_zeroed_vec(count).ok()?,
@@ -334,6 +381,7 @@ impl GaussianArrays {
 
     fn check(&self) -> std::result::Result<(), String> {
         self.training.check()?;
+        check_origin(self.origin)?;
         if self.sh_degree > MAX_SH_DEGREE {
             let degree = self.sh_degree;
             return Err(format!(

@@ -171,6 +171,12 @@ impl<'a> Layer<'a> {
         self.gaussians
     }
 
+    /// The placement of its Gaussians' positions: that of its state, with their origin.
+    #[doc(hidden)]
+    pub fn placement(&self) -> Placement {
+        self.state.placement.of_origin(self.gaussians.origin())
+    }
+
     /// The state in which it is uploaded.
     pub fn state(&self) -> LayerState {
         self.state

@@ -161,7 +161,12 @@ pub(super) struct Progress<'a> {
     call: &'a mut dyn FnMut(u64, u64),
 }
 
-impl Progress<'_> {
+impl<'a> Progress<'a> {
+    /// That of a file of so many bytes.
+    pub(super) fn new(total: u64, call: &'a mut dyn FnMut(u64, u64)) -> Self {
+        Self { total, call }
+    }
+
     /// Bytes of the whole file.
     pub(super) fn total(&self) -> u64 {
         self.total

@@ -55,7 +55,7 @@ impl Gaussians {
             // The first part is what the others leave in place.
             let count = if part == 0 { 0 } else { count };
             made.gaussians = Gaussians::with_room(count, self.sh_degree())?;
-            made.gaussians.set_trained_as(self);
+            made.gaussians.append(&self.empty_like());
             Some(made)
         };
         let made: Option<Vec<Part>> = counts.iter().enumerate().map(room).collect();

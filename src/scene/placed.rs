@@ -10,6 +10,20 @@ use rara_base::parallel::in_parallel;
 /// Gaussians that a thread turns at a time.
 const CHUNK: usize = 1 << 10;
 
+/// Units from zero from which on Gaussians have an origin.
+pub(super) const FAR: f64 = 1e4;
+
+/// The origin for Gaussians about a point: nothing where single precision holds them, to a thousandth of a unit and better, and
+/// whole units beyond that.
+pub(super) fn far_origin(point: DVec3) -> DVec3 {
+    // Beyond this even double precision has no whole units.
+    const FARTHEST: f64 = 1e15;
+    match (FAR..FARTHEST).contains(&point.abs().max_element()) {
+        true => point.round(),
+        false => DVec3::ZERO,
+    }
+}
+
 impl Gaussians {
     /// Scales, turns and moves the Gaussians themselves, their spherical harmonics too, in double precision. A layer's
     /// [placement](super::LayerState::placement) changes no number; this is for scenes that are written to files.
@@ -21,9 +35,7 @@ impl Gaussians {
         if *placement == Placement::IDENTITY {
             return Vec::new(); // to the bit
         }
-        for position in self.positions_mut() {
-            *position = placement.to_world(position.as_dvec3()).as_vec3();
-        }
+        self.move_by(|position| placement.to_world(position));
         for scale in self.scales_mut() {
             *scale = (scale.as_dvec3() * placement.scale()).as_vec3();
         }
@@ -44,9 +56,7 @@ impl Gaussians {
     /// which ascend.
     #[must_use = "what was dropped is to be told"]
     pub fn transform(&mut self, transform: &DAffine3) -> Vec<u32> {
-        for position in self.positions_mut() {
-            *position = transform.transform_point3(position.as_dvec3()).as_vec3();
-        }
+        self.move_by(|position| transform.transform_point3(position));
         let matrix = transform.matrix3;
         let arrays = self.arrays_mut();
         let shapes = arrays.scales.chunks_mut(CHUNK);
@@ -67,6 +77,15 @@ impl Gaussians {
         let Axes { turn, from, .. } = Axes::of(matrix);
         self.turn_harmonics(turn * from.transpose());
         self.drop_infinite()
+    }
+
+    /// Moves the centres, and their origin with them where that is far away.
+    fn move_by(&mut self, to: impl Fn(DVec3) -> DVec3) {
+        let (from, origin) = (self.origin(), far_origin(to(self.origin())));
+        self.arrays_mut().origin = origin;
+        for position in self.positions_mut() {
+            *position = (to(from + position.as_dvec3()) - origin).as_vec3();
+        }
     }
 
     /// Turns the spherical harmonics by an orthogonal matrix, which may mirror.

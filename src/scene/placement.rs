@@ -62,6 +62,15 @@ impl Placement {
         self.scale
     }
 
+    /// The placement of what is placed with its [origin](crate::Gaussians::origin) there.
+    #[doc(hidden)]
+    pub fn of_origin(&self, origin: DVec3) -> Self {
+        Self {
+            position: self.to_world(origin),
+            ..*self
+        }
+    }
+
     /// A point of the scene in the world.
     pub fn to_world(&self, point: DVec3) -> DVec3 {
         self.position + self.rotation * (self.scale * point)

@@ -119,6 +119,7 @@ impl Predicate {
         properties: &[Property],
         placement: &Placement,
     ) -> Result<Vec<bool>> {
+        let placement = &placement.of_origin(gaussians.origin());
         let each = |holds: &dyn Fn(usize) -> bool| (0..gaussians.len()).map(holds).collect();
         let select = |one: &Self| one.select(gaussians, properties, placement);
         Ok(match self {

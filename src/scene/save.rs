@@ -1,5 +1,6 @@
 //! Writing scenes; 3DGS `.ply` as INRIA's trainer does: the same properties in the same order, binary little endian.
 
+use glam::DVec3;
 use std::cmp::Reverse;
 use std::io::{self, Write};
 use std::path::Path;
@@ -156,8 +157,11 @@ fn write_header(out: &mut dyn Write, gaussians: &Gaussians) -> io::Result<()> {
     .chain(fixed(&[
         "opacity", "scale_0", "scale_1", "scale_2", "rot_0", "rot_1", "rot_2", "rot_3",
     ]));
-    for name in names {
-        writeln!(out, "property float {name}")?;
+    // Only double precision holds what is far from zero.
+    let is_far = gaussians.origin() != DVec3::ZERO;
+    for (at, name) in names.enumerate() {
+        let number = if is_far && at < 3 { "double" } else { "float" };
+        writeln!(out, "property {number} {name}")?;
     }
     writeln!(out, "end_header")
 }
@@ -165,10 +169,18 @@ fn write_header(out: &mut dyn Write, gaussians: &Gaussians) -> io::Result<()> {
 fn write_row(out: &mut dyn Write, gaussians: &Gaussians, index: usize) -> io::Result<()> {
     // At most degree 3: 3 + 3 + 48 + 1 + 3 + 4 numbers. They are collected first, since each write to `out` is a virtual
     // call.
-    let mut row = [0.0_f32; 62];
+    let (mut row, mut first) = ([0.0_f32; 62], 0);
     let sh = gaussians.sh_of(index);
     let coefficients = sh.len() / 3;
-    row[..3].copy_from_slice(&gaussians.positions()[index].to_array());
+    if gaussians.origin() == DVec3::ZERO {
+        row[..3].copy_from_slice(&gaussians.positions()[index].to_array());
+    } else {
+        let centre = gaussians.centre(index).to_array();
+        centre
+            .iter()
+            .try_for_each(|value| out.write_all(&value.to_le_bytes()))?;
+        first = 3;
+    }
     row[6..9].copy_from_slice(&sh[..3]);
     for (at, value) in row[9..].iter_mut().take(sh.len() - 3).enumerate() {
         let (channel, coefficient) = (at / (coefficients - 1), at % (coefficients - 1) + 1);
@@ -184,7 +196,7 @@ fn write_row(out: &mut dyn Write, gaussians: &Gaussians, index: usize) -> io::Re
     for (to, value) in bytes.chunks_exact_mut(4).zip(row) {
         to.copy_from_slice(&value.to_le_bytes());
     }
-    out.write_all(&bytes[..4 * (tail + 8)])
+    out.write_all(&bytes[4 * first..4 * (tail + 8)])
 }
 
 fn log(scale: f32) -> f32 {

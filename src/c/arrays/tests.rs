@@ -108,11 +108,16 @@ fn what_is_wrong_with_arrays_is_named() {
     let mut antialiased = packed(&gaussians);
     antialiased.antialiased = 1;
     antialiased.low_pass = 0.1;
+    antialiased.origin = [5e5, -1.0, 0.0];
     let (code, made_of_it) = made(&antialiased);
-    let is_antialiased = made_of_it
-        .is_some_and(|made| made.training() == Training::default().antialiased(true).low_pass(0.1));
-    assert!(code == RARA_OK && is_antialiased);
+    let made_of_it = made_of_it.expect("they can be drawn");
+    assert_eq!(code, RARA_OK);
+    let training = Training::default().antialiased(true).low_pass(0.1);
+    assert_eq!(made_of_it.training(), training);
+    assert_eq!(made_of_it.origin().to_array(), [5e5, -1.0, 0.0]);
     refused(&|a| a.struct_size = 12, "arrays->struct_size is 12");
+    refused(&|a| a.origin[1] = f64::NAN, "arrays->the origin is");
+    refused(&|a| a.low_pass = -1.0, "arrays->the low-pass is -1");
     refused(&|a| a.sh_degree = 4, "arrays->sh_degree is 4");
     refused(&|a| a.positions = null(), "arrays->positions is null");
     refused(&|a| a.scales = null(), "arrays->scales is null");

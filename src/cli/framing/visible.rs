@@ -53,16 +53,17 @@ impl Visible {
         let mut all = Vec::new();
         for layer in shown {
             let (state, gaussians) = (layer.state(), layer.gaussians());
+            let placement = layer.placement();
             let step = gaussians.len().div_ceil(SAMPLE).max(1);
             let weighed = (0..gaussians.len()).step_by(step).filter_map(|index| {
                 let opacity = f64::from(state.opacity) * f64::from(gaussians.opacities()[index]);
                 let shows = opacity > 0.0 && opacity >= FAINT * strongest;
                 let sigmas = (2.0 * (opacity / (AT_REACH * strongest)).max(1.0).ln()).sqrt();
-                let turn = state.placement.rotation() * gaussians.rotations()[index].as_dquat();
-                let scales = state.placement.scale() * gaussians.scales()[index].as_dvec3();
+                let turn = placement.rotation() * gaussians.rotations()[index].as_dquat();
+                let scales = placement.scale() * gaussians.scales()[index].as_dvec3();
                 let centre = gaussians.positions()[index].as_dvec3();
                 let reach = Reach {
-                    centre: state.placement.to_world(centre),
+                    centre: placement.to_world(centre),
                     axes: DMat3::from_quat(turn) * DMat3::from_diagonal(sigmas * scales),
                 };
                 shows.then_some(WeightedPoint {

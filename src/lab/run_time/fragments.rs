@@ -1,7 +1,7 @@
 //! How many fragments of a frame count, by the reference in single precision: their alpha is 1/255 or more, in a pixel
 //! that the splats before have not saturated.
 
-use rara::{Camera, Clip, Decay, Gaussians, Settings};
+use rara::{Camera, Clip, Decay, Gaussians, Placement, Settings};
 use rara_base::parallel::in_parallel;
 use rara_reference::{Splat, ViewTransform, classify, compact, project, sort, splat};
 
@@ -9,7 +9,8 @@ use rara_reference::{Splat, ViewTransform, classify, compact, project, sort, spl
 const BAND: u32 = 16;
 
 pub(super) fn count(scene: &Gaussians, camera: &Camera, settings: &Settings) -> u64 {
-    let view = ViewTransform::<f32>::new(camera);
+    let placement = Placement::IDENTITY.of_origin(scene.origin());
+    let view = ViewTransform::<f32>::in_layer(camera, &placement);
     let sides = classify::classify(scene, &view, &Clip::default(), settings);
     let drawn = compact::compact(&sides);
     let project = |&index: &u32| project::project(scene, index as usize, &view, settings);

@@ -4,6 +4,7 @@ use super::*;
 
 fn arrays() -> GaussianArrays {
     GaussianArrays {
+        origin: DVec3::new(5e6, 0.0, -1.0),
         positions: vec![Vec3::ZERO, Vec3::X],
         scales: vec![Vec3::ONE, Vec3::ZERO],
         rotations: vec![Quat::IDENTITY, Quat::from_rotation_x(1.0)],

@@ -6,7 +6,7 @@ use super::header::PlyHeader;
 use super::number::Number;
 use super::trained::{self, FILTER};
 use crate::Property;
-use crate::assemble::{FIXED, SH, SLOTS, check_count, degree_of};
+use crate::assemble::{FIXED, SCALES, SH, SLOTS, check_count, degree_of};
 use rara_base::counted::counted;
 use rara_base::error::shortened;
 
@@ -20,7 +20,7 @@ pub(super) enum Field {
 }
 
 /// The layout of the payload.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Layout<'a> {
     /// Elements that stand before the Gaussians.
     pub(super) before: &'a [ElementDef],
@@ -117,6 +117,15 @@ impl<'a> Layout<'a> {
             properties,
             after,
         })
+    }
+
+    /// True where centres are stored in more than single precision.
+    pub(super) fn has_wide_centres(&self) -> bool {
+        let is_wide = |field: &Field| match field {
+            Field::Scalar(kind, Some(slot)) => *slot < SCALES && !matches!(kind, Number::F32),
+            Field::Scalar(..) | Field::List(..) => false,
+        };
+        self.fields.iter().any(is_wide)
     }
 
     /// A row of zeros with a slot for each number that is read.

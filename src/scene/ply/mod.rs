@@ -10,6 +10,7 @@ mod trained;
 
 use std::io::{Read, SeekFrom};
 
+use glam::DVec3;
 use ply_rs::ply::Encoding;
 
 use self::header::PlyHeader;
@@ -18,10 +19,14 @@ use self::trained::TrainerKind;
 use super::assemble::Assembler;
 use super::failure::Failure;
 use super::load::{Input, Progress, SceneFile};
+use super::placed::far_origin;
 use super::{Format, LoadReport, Property};
 use crate::Training;
 use rara_base::counted::counted;
 use rara_base::error::{Error, Result};
+
+/// Gaussians of which one says where a scene is.
+const FIRST: u64 = 64;
 
 /// Reads 3DGS `.ply` files, compressed ones too.
 pub(super) fn read(
@@ -65,21 +70,54 @@ pub(super) fn read(
     }
     let layout = Layout::from_header(&header, asked).map_err(format)?;
     layout.check_size(header.encoding, left).map_err(format)?;
-    let properties = layout.properties.clone();
-    let assembler = Assembler::with_room(layout.count, layout.sh_degree, properties);
-    let mut assembler = assembler
-        .ok_or_else(|| Failure::Memory(counted(layout.count, "Gaussian")).error_in(name))?;
-
-    source
-        .seek(SeekFrom::Start(header.size))
-        .map_err(Error::io(name))?;
-    let read = match header.encoding {
-        Encoding::Ascii => ascii::read,
-        Encoding::BinaryLittleEndian | Encoding::BinaryBigEndian => binary::read,
+    let mut rows = |layout: &Layout, origin: DVec3, progress: &mut Progress<'_>| {
+        let properties = layout.properties.clone();
+        let assembler = Assembler::with_room(layout.count, layout.sh_degree, properties);
+        let mut assembler = assembler
+            .ok_or_else(|| Failure::Memory(counted(layout.count, "Gaussian")).error_in(name))?
+            .about(origin);
+        source
+            .seek(SeekFrom::Start(header.size))
+            .map_err(Error::io(name))?;
+        let (source, header, assembled) = (&mut *source, &header, &mut assembler);
+        let read = match header.encoding {
+            Encoding::Ascii => ascii::read(source, left, header, layout, assembled, progress),
+            Encoding::BinaryLittleEndian | Encoding::BinaryBigEndian => {
+                binary::read(source, left, header, layout, assembled, progress)
+            }
+        };
+        read.map_err(|failure| failure.error_in(name))?;
+        Ok(assembler)
     };
-    read(source, left, &header, &layout, &mut assembler, progress)
-        .map_err(|failure| failure.error_in(name))?;
+    // What is stored in single precision has it already.
+    let origin = match layout.has_wide_centres() {
+        true => {
+            let first = Layout {
+                count: layout.count.min(FIRST),
+                ..layout.clone()
+            };
+            let first = rows(
+                &first,
+                DVec3::ZERO,
+                &mut Progress::new(left, &mut |_, _| ()),
+            );
+            // What is wrong with a row is said where all are read.
+            let first = first.map(|first| first.finish().0.gaussians);
+            first.map_or(DVec3::ZERO, |first| match first.is_empty() {
+                true => DVec3::ZERO,
+                false => far_origin(first.centre(0)),
+            })
+        }
+        false => DVec3::ZERO,
+    };
+    let assembler = rows(&layout, origin, progress)?;
     let (mut loaded, mut properties) = assembler.finish();
+    if origin != DVec3::ZERO {
+        loaded.report.note(format!(
+            "counted the centres from ({}, {}, {}), which keeps their digits",
+            origin.x, origin.y, origin.z
+        ));
+    }
     note(&mut loaded.report, &header, layout.is_flat);
     if layout.is_flat {
         trained::flatten(&mut loaded.gaussians);

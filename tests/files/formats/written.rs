@@ -1,6 +1,6 @@
 //! What is written is read again as it was, within the format's steps.
 
-use rara::glam::{Quat, Vec3};
+use rara::glam::{DQuat, DVec3, Quat, Vec3};
 use rara::scene::{Kind, SaveOptions, generate, load, save, save_ply, save_with};
 use rara::{Gaussians, Placement};
 
@@ -277,4 +277,65 @@ fn nodes_of_gltf_place_their_gaussians() {
         "{distance:?}"
     );
     save_ply(&path, &loaded).unwrap();
+}
+
+/// Coordinates of a map, of which single precision has half units.
+#[test]
+fn centres_far_from_zero_keep_their_digits() {
+    let folder = Folder::new("formats-far");
+    let mut scene = generate(Kind::General, 300, 7);
+    let far = DVec3::new(500_000.0, 5_800_000.0, 100.0);
+    scene.set_origin(far).expect("it is finite");
+    for name in ["a.ply", "a.glb"] {
+        let path = folder.join(name);
+        save(&path, &scene).expect("it is written");
+        let read = load(&path, &mut |_, _| ()).expect("it is read").gaussians;
+        assert!(read.origin().distance(far) < 2.0, "{name}");
+        for index in 0..scene.len() {
+            let apart = read.centre(index).distance(scene.centre(index));
+            assert!(apart < 3e-7, "{name}: {apart}");
+        }
+        save(&path, &read).expect("it is written");
+        let again = load(&path, &mut |_, _| ()).expect("it is read").gaussians;
+        assert_eq!(again.origin(), read.origin(), "{name}");
+        assert!(again.positions() == read.positions(), "{name}");
+    }
+    // What lies near zero is stored and read as ever.
+    let (path, near) = (folder.join("near.ply"), generate(Kind::General, 30, 7));
+    save(&path, &near).expect("it is written");
+    let read = load(&path, &mut |_, _| ()).expect("it is read").gaussians;
+    assert_eq!(
+        (read.origin(), read.positions()),
+        (DVec3::ZERO, near.positions())
+    );
+}
+
+/// What is placed far away has its origin there, and sets of several origins become one.
+#[test]
+fn places_far_away_are_origins() {
+    let mut scene = generate(Kind::General, 300, 7);
+    let near = scene.clone();
+    let far = DVec3::new(-1_714_128.625, 4_991_800.25, 3_569_099.75);
+    let placement = Placement::new(far, DQuat::from_rotation_z(0.3), 2.0).expect("finite numbers");
+    assert!(scene.place(&placement).is_empty());
+    for index in 0..near.len() {
+        let expected = placement.to_world(near.centre(index));
+        assert!(scene.centre(index).distance(expected) < 1e-6);
+    }
+    let mut other = near.clone();
+    other.set_origin(far + 10.0).expect("it is finite");
+    let mut both = scene.clone();
+    both.append(&other);
+    assert_eq!(both.origin(), scene.origin());
+    for index in 0..near.len() {
+        let apart = both
+            .centre(scene.len() + index)
+            .distance(other.centre(index));
+        assert!(apart < 2e-6, "{apart}");
+    }
+    // Back near zero it has none.
+    let back = Placement::new(-far, DQuat::IDENTITY, 1.0).expect("finite numbers");
+    assert!(scene.place(&back).is_empty());
+    assert_eq!(scene.origin(), DVec3::ZERO);
+    assert!(scene.set_origin(DVec3::NAN).is_err());
 }

@@ -67,6 +67,7 @@ fn splitting_a_scene_into_files_gives_the_same_bytes() {
 fn part(scene: &Gaussians, from: usize, to: usize) -> Gaussians {
     let stride = 3 * scene.sh_coefficients();
     let part = GaussianArrays {
+        origin: scene.origin(),
         positions: scene.positions()[from..to].to_vec(),
         scales: scene.scales()[from..to].to_vec(),
         rotations: scene.rotations()[from..to].to_vec(),

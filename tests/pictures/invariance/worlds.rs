@@ -3,7 +3,7 @@
 use glam::{DMat3, DQuat, DVec3};
 use proptest::prelude::*;
 use rara::clip::Expression;
-use rara::{Clip, ClipOp, Gaussians, Mode, Plane, Settings};
+use rara::{BakeSettings, Clip, ClipOp, Gaussians, Mode, Plane, Settings, bake};
 use rara_lab::measure::differences;
 
 use super::{check, directions, draw, operations, planes, scenes, views};
@@ -133,4 +133,38 @@ fn a_world_of_another_power_of_two_is_the_same_picture_to_the_bit() {
         }
         Ok(())
     });
+}
+
+/// What single precision would round to half a unit is drawn as it is about zero. Eyes and planes lie on a grid that double
+/// precision holds there, so that nothing but the origin differs.
+#[test]
+fn an_origin_far_away_leaves_the_picture() {
+    let far = DVec3::new(500_000.0, 5_800_000.0, -12_345.0);
+    let grid = |value: f64| (value * f64::from(1 << 20)).round() / f64::from(1 << 20);
+    check(
+        (scenes(), views(), -0.5..0.5_f64),
+        |headless, (scene, camera, offset)| {
+            let mut away = scene.clone();
+            away.set_origin(far).expect("it is finite");
+            let near = camera.eye(DVec3::from(camera.eye.to_array().map(grid)));
+            let clips = |origin: DVec3| {
+                let plane = Plane::new(DVec3::X, grid(offset) - origin.x).expect("a normal");
+                Clip::of([plane], ClipOp::And)
+            };
+            let settings = Settings::default();
+            headless.load(&scene).expect("uploads");
+            let still = draw(headless, &near, &clips(DVec3::ZERO), &settings);
+            let eye = near.eye(near.eye + far);
+            headless.load(&away).expect("uploads");
+            let found = draw(headless, &eye, &clips(far), &settings);
+            prop_assert!(still.pixels == found.pixels);
+            let baked = [(&scene, DVec3::ZERO), (&away, far)].map(|(scene, origin)| {
+                let baked = bake(scene, &clips(origin), &BakeSettings::default());
+                baked.expect("a clip").gaussians
+            });
+            prop_assert!(baked[0].positions() == baked[1].positions());
+            prop_assert!(baked[1].origin() == far);
+            Ok(())
+        },
+    );
 }

@@ -11,6 +11,7 @@ use rara_base::error::{Error, Result};
 
 pub(super) fn encode(gaussians: &Gaussians) -> Result<Vec<u8>> {
     let mut turned = gaussians.clone();
+    turned.set_origin(DVec3::ZERO)?;
     // The reader turns the other way, which gives the same bits again.
     let _all_fit = turned.place(&Placement::new(DVec3::ZERO, turn().inverse(), 1.0)?);
     let count = turned.len();
@@ -84,6 +85,10 @@ pub(super) fn encode(gaussians: &Gaussians) -> Result<Vec<u8>> {
         "bufferViews": parts.views,
         "accessors": parts.accessors,
     });
+    if gaussians.origin() != DVec3::ZERO {
+        let translation = turn().inverse() * gaussians.origin();
+        document["nodes"][0]["translation"] = json!(translation.to_array());
+    }
     if !marks.is_empty() {
         document["meshes"][0]["primitives"][0]["extras"] = json!({ MARKS: marks });
     }

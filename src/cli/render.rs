@@ -13,7 +13,7 @@ use super::frame::FrameArgs;
 use super::framing;
 use super::kept::SessionCache;
 use super::memory;
-use super::output;
+use super::output::{self, counted};
 use super::panorama::{self, Panorama, PanoramaArgs};
 use super::path::PathArgs;
 use super::pictures::{
@@ -262,8 +262,10 @@ impl Render {
             (scenes, pictures) if scenes == pictures => numbers,
             (scenes, pictures) => {
                 return Err(Failure::Usage(format!(
-                    "there are {scenes} scenes and {pictures} cameras: give one camera for all, or as many as scenes (--frames \
-                     {scenes} of a path)"
+                    "there are {} and {}: give one camera for all, or as many as scenes (--frames \
+                     {scenes} of a path)",
+                    counted(scenes as u64, "scene"),
+                    counted(pictures as u64, "camera")
                 )));
             }
         };

@@ -4,6 +4,8 @@ use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
 
+use glam::DVec3;
+
 use super::{Format, Gaussians, LoadReport, Property, Training, ply};
 use rara_base::error::{Error, Result};
 
@@ -136,10 +138,7 @@ fn read<R: Read + Seek>(
     let mut beginning = (&mut source).take(START);
     beginning.read_to_end(&mut start).map_err(Error::io(name))?;
     source.rewind().map_err(Error::io(name))?;
-    let mut progress = Progress {
-        total,
-        call: progress,
-    };
+    let mut progress = Progress::new(total, progress);
     let input = Input {
         source: &mut source,
         name,
@@ -147,12 +146,19 @@ fn read<R: Read + Seek>(
         properties,
     };
     // What is of no known format is read as a PLY, which says what is wrong with it, where no other format can be.
-    let loaded = match start.starts_with(b"ply") {
+    let (mut loaded, properties) = match start.starts_with(b"ply") {
         true => ply::read(input, &mut progress)?,
         false => super::formats::read(&start, input, &mut progress)?,
     };
+    let origin = loaded.gaussians.origin();
+    if origin != DVec3::ZERO {
+        loaded.report.note(format!(
+            "counted the centres from ({}, {}, {}), which keeps their digits",
+            origin.x, origin.y, origin.z
+        ));
+    }
     progress.left(0);
-    Ok(loaded)
+    Ok((loaded, properties))
 }
 
 /// The caller's progress callback; formats call it with the bytes that remain.

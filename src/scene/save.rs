@@ -1,9 +1,10 @@
 //! Writing scenes; 3DGS `.ply` as INRIA's trainer does: the same properties in the same order, binary little endian.
 
-use glam::DVec3;
 use std::cmp::Reverse;
 use std::io::{self, Write};
 use std::path::Path;
+
+use glam::DVec3;
 
 use super::formats::WRITERS;
 use super::{Format, Gaussians, Training};

@@ -333,7 +333,12 @@ pub fn truth(
     bytemuck::cast_slice::<_, u8>(scene.rotations()).hash(&mut hash);
     bytemuck::cast_slice::<_, u8>(scene.opacities()).hash(&mut hash);
     bytemuck::cast_slice::<_, u8>(scene.sh()).hash(&mut hash);
-    let scene_key = (hash.finish(), scene.sh_degree(), scene.training());
+    let scene_key = (
+        hash.finish(),
+        scene.sh_degree(),
+        scene.training(),
+        scene.origin(),
+    );
     // Numbers are written so that different ones differ.
     let key = format!("{scene_key:?} {camera:?} {clip:?} {settings:?}");
     let mut last = LAST.lock().unwrap_or_else(PoisonError::into_inner);

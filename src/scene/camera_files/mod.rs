@@ -16,6 +16,7 @@ use std::sync::Arc;
 use glam::{DMat3, DMat4, DVec3};
 
 use crate::camera::Camera;
+use rara_base::counted::counted;
 use rara_base::error::{Error, Result, shortened};
 use rara_base::json;
 use rigid::Rigid;
@@ -242,7 +243,8 @@ impl Parts {
                 ));
             }
             if whole != side {
-                repairs.push(format!("its {name} of {side} pixels is taken for {whole}"));
+                let side = counted(side, "pixel");
+                repairs.push(format!("its {name} of {side} is taken for {whole}"));
             }
             Ok(whole as u32)
         };

@@ -112,12 +112,6 @@ pub(super) fn read(
     };
     let assembler = rows(&layout, origin, progress)?;
     let (mut loaded, mut properties) = assembler.finish();
-    if origin != DVec3::ZERO {
-        loaded.report.note(format!(
-            "counted the centres from ({}, {}, {}), which keeps their digits",
-            origin.x, origin.y, origin.z
-        ));
-    }
     note(&mut loaded.report, &header, layout.is_flat);
     if layout.is_flat {
         trained::flatten(&mut loaded.gaussians);

@@ -289,7 +289,13 @@ fn centres_far_from_zero_keep_their_digits() {
     for name in ["a.ply", "a.glb"] {
         let path = folder.join(name);
         save(&path, &scene).expect("it is written");
-        let read = load(&path, &mut |_, _| ()).expect("it is read").gaussians;
+        let read = load(&path, &mut |_, _| ()).expect("it is read");
+        let report = read.report.to_string();
+        assert!(
+            report.contains("counted the centres from"),
+            "{name}: {report}"
+        );
+        let read = read.gaussians;
         assert!(read.origin().distance(far) < 2.0, "{name}");
         for index in 0..scene.len() {
             let apart = read.centre(index).distance(scene.centre(index));

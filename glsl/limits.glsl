@@ -8,7 +8,7 @@ const float COMPENSATION_SQUARE_MIN = 0.000025;
 const float NEAR_Z = 0.2;
 // The projection's Jacobian is evaluated with x/z and y/z clamped this share of the picture beyond each edge.
 const float CLAMP_MARGIN = 0.15;
-// What an opaque splat lets through where the logarithm of that is needed.
+// An opaque splat counts as one that lets this much through where the logarithm of that is needed.
 const float TRANSMITTANCE_OPAQUE = 1e-30;
 // 1 / ALPHA_MIN: a splat contributes nothing to a pixel in which its unclipped alpha is below 1/255.
 const float ALPHA_MIN_INVERSE = 255.0;

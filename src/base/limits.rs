@@ -7,7 +7,7 @@ pub const COMPENSATION_SQUARE_MIN: f32 = 0.000025;
 pub const NEAR_Z: f32 = 0.2;
 /// The projection's Jacobian is evaluated with x/z and y/z clamped this share of the picture beyond each edge.
 pub const CLAMP_MARGIN: f32 = 0.15;
-/// What an opaque splat lets through where the logarithm of that is needed.
+/// An opaque splat counts as one that lets this much through where the logarithm of that is needed.
 pub const TRANSMITTANCE_OPAQUE: f32 = 1e-30;
 /// 1 / ALPHA_MIN: a splat contributes nothing to a pixel in which its unclipped alpha is below 1/255.
 pub const ALPHA_MIN_INVERSE: f32 = 255.0;

@@ -46,7 +46,7 @@ pub struct RaraGaussianArrays {
     pub antialiased: vk::Bool32,
     /// The low-pass that they were trained with, square pixels: see rara_gaussians_set_low_pass. Default: 0, which is 0.3.
     pub low_pass: f32,
-    /// What the positions are relative to, world units, for scenes far from zero. Default: 0, 0, 0.
+    /// The point that positions are relative to, world units, for scenes far from zero. Default: 0, 0, 0.
     pub origin: [f64; 3],
 }
 

@@ -53,7 +53,7 @@ pub struct RaraGaussiansInfo {
     pub antialiased: vk::Bool32,
     /// The low-pass that they are drawn with, square pixels: see rara_gaussians_set_low_pass.
     pub low_pass: f32,
-    /// What the scene's positions are relative to: zero unless it is far from there, as in coordinates of a map.
+    /// The point that the scene's positions are relative to: zero unless it is far from there, as in coordinates of a map.
     pub origin: [f64; 3],
 }
 

@@ -71,11 +71,11 @@ pub const RARA_SHOW_MEAN: RaraShow = 3;
 
 /// The order in which splats are blended.
 pub type RaraSortBy = u32;
-/// What all visible layers ask for (glTF by distance, other files by depth), or by depth where they differ. The default.
+/// The order that all visible layers ask for (glTF by distance, other files by depth), or by depth where they differ. The default.
 pub const RARA_SORT_BY_SCENE: RaraSortBy = 0;
-/// By the depth of their centres along the view axis, as 3DGS does.
+/// The depth of their centres along the view axis orders them, as in 3DGS.
 pub const RARA_SORT_BY_DEPTH: RaraSortBy = 1;
-/// By the distance of their centres from the eye.
+/// The distance of their centres from the eye orders them.
 pub const RARA_SORT_BY_DISTANCE: RaraSortBy = 2;
 
 /// RARA_MODE_EXACT only: how the normal distribution's Phi is approximated, and the largest error.

@@ -179,8 +179,8 @@ impl Convert {
             .for_each(|own| *own *= opacity);
         let least = self.min_opacity.unwrap_or(0.0);
         let mut part_of = Vec::with_capacity(gaussians.len());
-        for (position, own) in gaussians.positions().iter().zip(gaussians.opacities()) {
-            let is_clipped = !clip.keeps(gaussians.origin() + position.as_dvec3());
+        for (index, own) in gaussians.opacities().iter().enumerate() {
+            let is_clipped = !clip.keeps(gaussians.centre(index));
             let is_faint = !is_clipped && *own < least;
             document.clipped += usize::from(is_clipped);
             document.faint += usize::from(is_faint);
@@ -237,7 +237,7 @@ impl Convert {
         Ok(())
     }
 }
-/// What to say where a file of this format cannot hold what the centres are counted from.
+/// The warning that a file of this format cannot hold what the centres are counted from.
 fn lost_origin(format: scene::Format, gaussians: &rara::Gaussians) -> Option<String> {
     let [x, y, z] = gaussians.origin().to_array();
     match format {

@@ -78,7 +78,7 @@ impl<'a, T> TrainingNote<'a, T> {
     }
 }
 
-/// What to say of a file, which says nothing itself, where the settings beside it say that it was trained antialiased.
+/// The note on a file, which says nothing itself, where the settings beside it say that it was trained antialiased.
 pub(super) fn trained(file: &Path) -> Option<String> {
     let by = training::antialiased_by(file)?;
     Some(format!(
@@ -186,7 +186,7 @@ pub(super) fn check_alike(loaded: &SceneLayers) -> Result<(), Failure> {
     )))
 }
 
-/// What to say where a file of this format says less of how its Gaussians were trained, or says it to rara alone.
+/// The warning that a file of this format says less of how its Gaussians were trained, or says it to rara alone.
 pub(super) fn lost(format: Format, training: Training) -> Option<String> {
     if training.linear && format != Format::Gltf {
         return Some(format!(

@@ -22,29 +22,15 @@ pub(in super::super) struct Container {
 }
 
 const H264: &[&str] = &["-c:v", "libx264", "-crf", "17", "-movflags", "+faststart"];
-const VP9: &[&str] = &[
-    "-c:v",
-    "libvpx-vp9",
-    "-crf",
-    "24",
-    "-b:v",
-    "0",
-    "-row-mt",
-    "1",
-];
+/// The flags of VP9, and more.
+macro_rules! vp9 {
+    ($($more:literal),*) => {
+        &["-c:v", "libvpx-vp9", "-crf", "24", "-b:v", "0", "-row-mt", "1" $(, $more)*]
+    };
+}
+const VP9: &[&str] = vp9!();
 /// Transparency is a film of its own, and frames that are not shown are not for such.
-const VP9_ALPHA: &[&str] = &[
-    "-c:v",
-    "libvpx-vp9",
-    "-crf",
-    "24",
-    "-b:v",
-    "0",
-    "-row-mt",
-    "1",
-    "-auto-alt-ref",
-    "0",
-];
+const VP9_ALPHA: &[&str] = vp9!("-auto-alt-ref", "0");
 
 /// Halved colours need even sides. Films of this size are BT.709 for those who play them.
 macro_rules! halved {

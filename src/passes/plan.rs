@@ -121,11 +121,11 @@ impl Plan {
         let (_target, _sh, _phi, key_bits, beam_switch, transmittance_min) =
             settings.precision.fields();
         let filled = scene.layers.iter().filter(|layer| layer.gaussians() > 0);
-        let alphas = filled.map(|layer| layer.training().alpha_max);
+        let alphas = filled.clone().map(|layer| layer.training().alpha_max);
         let alpha_max = alphas.fold(1.0, f32::min);
         let weight = weight_data(&scene, &region, &layers, settings, beam_switch)?;
         let boxes = layers::boxes(scene.layers, camera);
-        let trained = scene.layers.iter().filter(|layer| layer.is_visible());
+        let trained = filled.filter(|layer| layer.is_visible());
         let trained = trained.map(SceneLayer::training);
         let order = settings.order_of(camera, trained);
         let keys = DepthKeys::new(boxes, key_bits, order)?;

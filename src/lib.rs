@@ -40,8 +40,8 @@ pub mod scene {
     };
     #[cfg(feature = "formats")]
     pub use rara_scene::{
-        Format, LoadReport, Remark, SaveOptions, SceneFile, load, load_from, load_from_with,
-        load_with, save, save_ply, save_with, saved_format,
+        Format, LoadReport, Outline, Remark, SaveOptions, SceneFile, load, load_from,
+        load_from_with, load_with, save, save_ply, save_with, saved_format,
     };
 }
 

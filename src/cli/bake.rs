@@ -327,7 +327,7 @@ fn outputs(loaded: &SceneLayers, paths: &[PathBuf], baked: Vec<BakedGaussians>) 
                 gaussians: baked.gaussians,
                 sources: baked.sources,
             });
-            vec![select::joined(taken.collect())]
+            vec![select::joined(taken.collect()).gaussians]
         }
     };
     let outputs = paths.iter().cloned().zip(gaussians);

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use glam::{DQuat, DVec3};
-use rara::scene::{self, Part, SaveOptions};
+use rara::scene::{self, Outline, Part, SaveOptions};
 use rara::{Clip, LayerState, Placement};
 use serde::Serialize;
 
@@ -124,16 +124,27 @@ impl Convert {
                 sources: part.numbers,
             });
         }
-        let mut whole = select::joined(taken);
-        document.lost += whole.place(&placement).len();
+        let Part {
+            gaussians: mut whole,
+            numbers,
+        } = select::joined(taken);
+        let mut outline = std::mem::take(&mut loaded.outline);
+        outline.keep(&numbers);
+        let lost = whole.place(&placement);
+        document.lost += lost.len();
+        outline.keep(&select::without(&lost, whole.len() + lost.len()));
         if let Some(degree) = self.sh_degree.filter(|&degree| degree < whole.sh_degree()) {
             whole.set_sh_degree(degree);
         }
-        let options = SaveOptions::default().spz_version(self.spz_version);
+        let lost_words = lost_words(format, &outline);
+        let options = SaveOptions::default()
+            .spz_version(self.spz_version)
+            .outline(Some(outline));
         document.clamped = scene::save_with(&self.output, &whole, &options)?;
         let notes = [
             trained::lost(format, whole.training()),
             lost_origin(format, &whole),
+            lost_words,
         ];
         for note in notes.into_iter().flatten() {
             say(format_args!("warning: {note}"));
@@ -170,7 +181,7 @@ impl Convert {
         let own = layer.clip.as_ref().map(|own| own.clip());
         let clip = own.as_ref().unwrap_or(clip);
         let mut gaussians = layer.gaussians;
-        let count = gaussians.len() as u32;
+        let count = gaussians.len();
         let lost = gaussians.place(&placement);
         document.lost += lost.len();
         gaussians
@@ -188,10 +199,7 @@ impl Convert {
         }
         let mut part = gaussians.into_parts(&part_of, 2)?.swap_remove(0);
         if !lost.is_empty() {
-            let mut lost = lost.into_iter().peekable();
-            let left: Vec<u32> = (0..count)
-                .filter(|number| lost.next_if_eq(number).is_none())
-                .collect();
+            let left = select::without(&lost, count);
             part.numbers
                 .iter_mut()
                 .for_each(|number| *number = left[*number as usize]);
@@ -237,6 +245,7 @@ impl Convert {
         Ok(())
     }
 }
+
 /// The warning that a file of this format cannot hold what the centres are counted from.
 fn lost_origin(format: scene::Format, gaussians: &rara::Gaussians) -> Option<String> {
     let [x, y, z] = gaussians.origin().to_array();
@@ -248,4 +257,11 @@ fn lost_origin(format: scene::Format, gaussians: &rara::Gaussians) -> Option<Str
              --place move:{x},{y},{z}"
         )),
     }
+}
+
+/// The warning that a file of this format has no room for what others say around their Gaussians.
+fn lost_words(format: scene::Format, outline: &Outline) -> Option<String> {
+    (format != scene::Format::Gltf && !outline.is_silent()).then(|| {
+        format!("{format} has no room for the names and extras of the glTF; a .glb keeps them")
+    })
 }

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use rara::clip::Expression;
-use rara::scene::{Format, Property};
+use rara::scene::{Format, Outline, Property};
 use rara::{Gaussians, Layer, LayerState};
 
 use super::failure::Failure;
@@ -77,6 +77,8 @@ pub(super) struct SceneLayers {
     pub(super) dropped: u64,
     /// The loader's reports, a line each.
     pub(super) notes: Vec<String>,
+    /// What the files say around their Gaussians.
+    pub(super) outline: Outline,
 }
 
 impl SceneLayers {

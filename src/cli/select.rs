@@ -111,27 +111,42 @@ pub(super) struct LayerRemains {
     pub(super) sources: Vec<u32>,
 }
 
-/// What has become of layers as one set. Where selections have divided files, it is in the files' order, as if they had not:
-/// Gaussians that are equally deep are drawn in that order.
-pub(super) fn joined(layers: Vec<LayerRemains>) -> Gaussians {
+/// The numbers below a count but for these, which ascend.
+pub(super) fn without(numbers: &[u32], count: usize) -> Vec<u32> {
+    let mut numbers = numbers.iter().peekable();
+    (0..count as u32)
+        .filter(|number| numbers.next_if_eq(&number).is_none())
+        .collect()
+}
+
+/// What has become of layers as one set, with the number of each Gaussian in all files. Where selections have divided files, it
+/// is in the files' order, as if they had not: Gaussians that are equally deep are drawn in that order.
+pub(super) fn joined(layers: Vec<LayerRemains>) -> Part {
     let mut joined = Gaussians::default();
+    let mut before = 0_u32;
+    let numbers = layers.iter().map(|layer| {
+        let number = |&source: &u32| match &layer.numbers {
+            Some((first, numbers)) => first.saturating_add(numbers[source as usize]),
+            None => before.saturating_add(source),
+        };
+        let own: Vec<u32> = layer.sources.iter().map(number).collect();
+        before = before.saturating_add(layer.count as u32);
+        own
+    });
+    let numbers: Vec<_> = numbers.collect();
     if layers.iter().all(|layer| layer.numbers.is_none()) {
         for layer in layers {
             joined.append(&layer.gaussians);
         }
-        return joined;
+        return Part {
+            gaussians: joined,
+            numbers: numbers.concat(),
+        };
     }
     let mut places = Vec::new();
-    let mut before = 0;
-    for (at, layer) in layers.iter().enumerate() {
-        for (index, &source) in layer.sources.iter().enumerate() {
-            let number = match &layer.numbers {
-                Some((first, numbers)) => u64::from(*first) + u64::from(numbers[source as usize]),
-                None => before + u64::from(source),
-            };
-            places.push((number, at, index));
-        }
-        before += layer.count as u64;
+    for (at, own) in numbers.into_iter().enumerate() {
+        let own = own.into_iter().enumerate();
+        places.extend(own.map(|(index, number)| (number, at, index)));
     }
     places.sort_unstable();
     let degree = layers.iter().map(|layer| layer.gaussians.sh_degree()).max();
@@ -142,7 +157,7 @@ pub(super) fn joined(layers: Vec<LayerRemains>) -> Gaussians {
     }
     joined.set_sh_degree(degree.unwrap_or(0));
     let mut sh = vec![0.0; 3 * joined.sh_coefficients()];
-    for (_, at, index) in places {
+    for &(_, at, index) in &places {
         let from = &layers[at].gaussians;
         let own = from.sh_of(index);
         sh.fill(0.0);
@@ -155,5 +170,8 @@ pub(super) fn joined(layers: Vec<LayerRemains>) -> Gaussians {
             &sh,
         );
     }
-    joined
+    Part {
+        gaussians: joined,
+        numbers: places.into_iter().map(|(number, ..)| number).collect(),
+    }
 }

@@ -211,6 +211,7 @@ impl Assembler {
             report: self.report,
             format: Format::Ply,
             antialiased: None,
+            outline: None,
         };
         (loaded, self.properties)
     }

@@ -28,6 +28,8 @@ mod layer;
 #[cfg(feature = "formats")]
 mod load;
 mod numbers;
+#[cfg(feature = "formats")]
+mod outline;
 mod parts;
 pub mod picture;
 mod placed;
@@ -72,6 +74,7 @@ pub use training::{SortBy, Training};
 pub use {
     format::Format,
     load::{SceneFile, load, load_from, load_from_with, load_with},
+    outline::Outline,
     report::{LoadReport, Remark},
     save::{SaveOptions, save, save_ply, save_with, saved_format},
 };

@@ -7,7 +7,7 @@ use std::path::Path;
 use glam::DVec3;
 
 use super::formats::WRITERS;
-use super::{Format, Gaussians, Training};
+use super::{Format, Gaussians, Outline, Training};
 use rara_base::error::{Error, Result};
 use rara_base::files::write_atomically;
 use rara_base::setters;
@@ -53,24 +53,29 @@ pub fn save(path: &Path, gaussians: &Gaussians) -> Result<u64> {
 
 setters! {
     /// What a format leaves open that [`save_with`] writes.
-    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    #[derive(Debug, Clone, PartialEq, Eq)]
     #[non_exhaustive]
     pub struct SaveOptions {
         /// The version of a `.spz` file: 2, which the oldest readers know, 3, or 4, whose attributes are streams of zstd, each by itself.
         pub spz_version: u32,
+        /// What a `.glb` says around its Gaussians; other formats have no room for it.
+        pub outline: Option<Outline>,
     }
 }
 
 impl Default for SaveOptions {
     fn default() -> Self {
-        Self { spz_version: 3 }
+        Self {
+            spz_version: 3,
+            outline: None,
+        }
     }
 }
 
 /// Like [`save`], as the options say.
 ///
 /// # Errors
-/// Those of [`save`], and [`Error::Invalid`] for a version that is not written.
+/// Those of [`save`], and [`Error::Invalid`] for a version that is not written, and for an outline of other Gaussians.
 pub fn save_with(path: &Path, gaussians: &Gaussians, options: &SaveOptions) -> Result<u64> {
     let format = saved_format(path)?;
     if let Some(writer) = WRITERS.iter().find(|writer| writer.format == format) {

@@ -264,3 +264,51 @@ fn what_cannot_be_written_is_refused_before_anything_is_read() {
     fs::write(here.join("a.usd"), "#usda 1.0").unwrap();
     refused(&line(&here, "info @/a.usd"), 1, "USD");
 }
+
+/// Names and extras go from .glb to .glb with the Gaussians that are theirs, and other formats say that they have no room.
+#[test]
+fn names_and_extras_stay_with_their_gaussians() {
+    let here = folder("convert-names");
+    scene(&here);
+    done(line(&here, "convert @/scene.ply -o @/plain.glb"));
+    let glb = fs::read(here.join("plain.glb")).expect("a scene");
+    let (mut json, binary) = chunks(&glb);
+    json["nodes"][0]["name"] = "the statue".into();
+    json["nodes"][0]["extras"] = serde_json::json!({"room": 12});
+    json["asset"]["copyright"] = "A. Sculptor".into();
+    let mut text = json.to_string().into_bytes();
+    text.resize(text.len().next_multiple_of(4), b' ');
+    let mut named = b"glTF\x02\0\0\0".to_vec();
+    named.extend((20 + text.len() as u32 + binary.len() as u32).to_le_bytes());
+    named.extend((text.len() as u32).to_le_bytes());
+    named.extend(b"JSON");
+    named.extend(text);
+    named.extend(binary);
+    fs::write(here.join("named.glb"), named).expect("a scene");
+
+    let words = "convert @/scene.ply @/named.glb -o @/both.glb --clip plane:1,0,0,0 --select few=opacity>0.5 --json";
+    let report = document(line(&here, words));
+    let (json, _) = chunks(&fs::read(here.join("both.glb")).expect("a scene"));
+    assert_eq!(json["nodes"][1]["name"], "the statue");
+    assert_eq!(json["nodes"][1]["extras"]["room"], 12);
+    assert_eq!(json["asset"]["copyright"], "A. Sculptor");
+    let count = |mesh: usize| {
+        let position = &json["meshes"][mesh]["primitives"][0]["attributes"]["POSITION"];
+        json["accessors"][position.as_u64().expect("a number") as usize]["count"].clone()
+    };
+    let half = report["written"].as_u64().expect("a count") / 2;
+    assert_eq!([count(0), count(1)], [half, half], "{json}");
+
+    let printed = stderr(&done(line(&here, "convert @/named.glb -o @/named.ply")));
+    let says = "has no room for the names and extras of the glTF";
+    assert!(printed.contains(says), "{printed}");
+    let printed = stderr(&done(line(&here, "convert @/plain.glb -o @/plain.ply")));
+    assert!(!printed.contains(says), "{printed}");
+}
+
+/// The JSON of a .glb, and what is behind it.
+fn chunks(glb: &[u8]) -> (serde_json::Value, &[u8]) {
+    let length = u32::from_le_bytes(glb[12..16].try_into().expect("4 bytes")) as usize;
+    let (json, rest) = glb[20..].split_at(length);
+    (serde_json::from_slice(json).expect("JSON"), rest)
+}

@@ -5,11 +5,12 @@ use meshoptimizer_rs::codec::{
     ExpMode, VertexEncoding, encode_filter_exp, encode_filter_quat, encode_vertex_buffer,
 };
 use rara::glam::{DAffine3, DMat3, DQuat, DVec3, Quat, Vec3};
-use rara::scene::{LoadReport, load_from};
+use rara::scene::{LoadReport, Outline, SaveOptions, SceneFile, load, load_from, save_with};
 use rara::{Gaussians, SortBy, Training};
 use serde_json::{Value, json};
 
 use super::variants::base64;
+use crate::folder::Folder;
 use std::io::Cursor;
 use std::path::Path;
 
@@ -128,14 +129,18 @@ impl Asset {
     }
 
     fn load(&self) -> rara::Result<(Gaussians, LoadReport)> {
+        let found = self.file()?;
+        Ok((found.gaussians, found.report))
+    }
+
+    fn file(&self) -> rara::Result<SceneFile> {
         let mut document = self.document.clone();
         document["buffers"] = json!([{
             "byteLength": self.bytes.len(),
             "uri": format!("data:application/octet-stream;base64,{}", base64(&self.bytes)),
         }]);
         let text = document.to_string();
-        let found = load_from(Cursor::new(text), Path::new("a.gltf"), &mut |_, _| ())?;
-        Ok((found.gaussians, found.report))
+        load_from(Cursor::new(text), Path::new("a.gltf"), &mut |_, _| ())
     }
 }
 
@@ -622,4 +627,127 @@ fn an_asset_says_how_it_is_drawn() {
         let error = asset.load().unwrap_err().to_string();
         assert!(error.contains(&name), "{error}");
     }
+}
+
+/// Names and extras are on the nodes, meshes and primitives of the same Gaussians when the scene is written again.
+#[test]
+fn names_and_extras_are_written_again() {
+    let mut asset = Asset::new();
+    let primitive = asset.primitive().clone();
+    let with = |extras: Value| {
+        let mut primitive = primitive.clone();
+        primitive["extras"] = extras;
+        primitive
+    };
+    asset.document["asset"]["copyright"] = json!("A. Sculptor");
+    asset.document["asset"]["extras"] = json!({"scanner": 7.25});
+    asset.document["scenes"] = json!([{"name": "hall", "nodes": [2, 0, 3]}]);
+    asset.document["nodes"] = json!([
+        {"name": "left", "mesh": 0, "scale": [2, 2, 2], "extras": {"id": [1, 2, {"deep": null}]}},
+        {"name": "right", "mesh": 0, "translation": [1, 0, 0]},
+        {"name": "rig", "children": [1, 4], "extras": "no object", "rotation": [0, 1, 0, 0]},
+        {"name": "a lamp without Gaussians"},
+        {"mesh": 1, "translation": [0, 5, 0]},
+    ]);
+    asset.document["meshes"] = json!([
+        {"name": "statue", "extras": {"tint": true},
+         "primitives": [with(json!({"part": "head"})), with(json!({"rara": {"lowPass": "0.1"}}))]},
+        {"primitives": [primitive.clone(), primitive]},
+    ]);
+    let file = asset.file().unwrap();
+    let outline = file.outline.unwrap();
+    assert_eq!(outline.count(), 12);
+    let folder = Folder::new("formats-outline");
+    let path = folder.join("again.glb");
+    let written = |gaussians: &Gaussians, outline: &Outline| {
+        let options = SaveOptions::default().outline(Some(outline.clone()));
+        save_with(&path, gaussians, &options)?;
+        rara::Result::Ok((load(&path, &mut |_, _| ())?, json_of_glb(&path)))
+    };
+    let (again, document) = written(&file.gaussians, &outline).unwrap();
+    assert_eq!(again.outline.as_ref(), Some(&outline));
+    assert_eq!(again.gaussians.positions(), file.gaussians.positions());
+    let asset_found = &document["asset"];
+    assert_eq!(asset_found["copyright"], "A. Sculptor");
+    assert_eq!(asset_found["extras"], json!({"scanner": 7.25}));
+    let scene = &document["scenes"][0];
+    assert_eq!(
+        (&scene["name"], &scene["nodes"]),
+        (&json!("hall"), &json!([0, 3]))
+    );
+    let nodes = document["nodes"].as_array().unwrap();
+    let named = |at: usize| [&nodes[at]["name"], &nodes[at]["mesh"]];
+    assert_eq!(nodes.len(), 4, "{document}");
+    assert_eq!(nodes[0]["children"], json!([1, 2]));
+    assert_eq!(nodes[0]["extras"], "no object");
+    assert_eq!(named(1), [&json!("right"), &json!(0)]);
+    assert_eq!(named(2), [&Value::Null, &json!(1)]);
+    assert_eq!(named(3), [&json!("left"), &json!(2)]);
+    assert_eq!(nodes[3]["extras"], json!({"id": [1, 2, {"deep": null}]}));
+    for mesh in [0, 2] {
+        let mesh = &document["meshes"][mesh];
+        assert_eq!(
+            (&mesh["name"], &mesh["extras"]),
+            (&json!("statue"), &json!({"tint": true}))
+        );
+        // All are drawn as the first is, which is how rara drew them.
+        let marked = json!({"part": "head"});
+        assert_eq!(mesh["primitives"][0]["extras"], marked);
+        assert_eq!(mesh["primitives"][1].get("extras"), None);
+    }
+    // What is alike is one primitive.
+    let plain = &document["meshes"][1]["primitives"];
+    assert_eq!(plain.as_array().unwrap().len(), 1);
+
+    // A node whose Gaussians are dropped keeps its name, and the others keep theirs.
+    let kept: Vec<u32> = vec![4, 5, 8, 11];
+    let part_of: Vec<u32> = (0..12).map(|at| u32::from(!kept.contains(&at))).collect();
+    let part = file
+        .gaussians
+        .clone()
+        .into_parts(&part_of, 2)
+        .unwrap()
+        .swap_remove(0);
+    let mut fewer = outline.clone();
+    fewer.keep(&part.numbers);
+    let (again, document) = written(&part.gaussians, &fewer).unwrap();
+    assert_eq!(again.gaussians.positions(), part.gaussians.positions());
+    assert_eq!(document["nodes"][1], json!({"name": "right"}));
+    let counts = |at: usize| {
+        let position = &document["meshes"][0]["primitives"][at]["attributes"]["POSITION"];
+        document["accessors"][position.as_u64().unwrap() as usize]["count"].clone()
+    };
+    assert_eq!(document["meshes"].as_array().unwrap().len(), 2);
+    assert_eq!(
+        (
+            counts(0),
+            document["meshes"][1]["primitives"]
+                .as_array()
+                .unwrap()
+                .len()
+        ),
+        (json!(2), 2)
+    );
+    let error = written(&part.gaussians, &outline).unwrap_err().to_string();
+    assert!(
+        error.contains("of 12 Gaussians, and there are 4"),
+        "{error}"
+    );
+
+    // Two files become one.
+    let mut both = outline.clone();
+    both.append(outline.clone());
+    let mut twice = file.gaussians.clone();
+    twice.append(&file.gaussians);
+    let (_, document) = written(&twice, &both).unwrap();
+    assert_eq!(document["asset"]["copyright"], "A. Sculptor");
+    assert_eq!(document["scenes"][0]["nodes"], json!([0, 3, 4, 7]));
+    assert_eq!(document["nodes"][4]["children"], json!([5, 6]));
+}
+
+/// The JSON of a `.glb`.
+fn json_of_glb(path: &Path) -> Value {
+    let bytes = std::fs::read(path).unwrap();
+    let length = u32::from_le_bytes(bytes[12..16].try_into().unwrap()) as usize;
+    serde_json::from_slice(&bytes[20..20 + length]).unwrap()
 }

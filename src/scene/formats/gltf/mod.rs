@@ -3,6 +3,7 @@
 mod accessor;
 mod buffers;
 mod nodes;
+mod outline;
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
@@ -14,6 +15,7 @@ use serde_json::Value;
 use self::accessor::Accessor;
 use self::buffers::Buffers;
 use self::nodes::Transform;
+use self::outline::OutlineReader;
 use super::super::assemble::{ColumnForm, OPACITY, ROTATION, SCALES, SH};
 use super::super::{SH_0, SortBy, sh_coefficients};
 use super::bytes::Bytes;
@@ -84,14 +86,16 @@ pub(super) fn read_document(
     let turned = Transform::Similar(Placement::new(DVec3::ZERO, turn(), 1.0)?);
     let mut meshes = BTreeMap::new();
     check_extensions(document)?;
-    for (number, transform) in nodes::meshes(document, &mut buffers)? {
-        let mesh = match meshes.entry(number) {
+    let (all, parents) = nodes::meshes(document, &mut buffers)?;
+    let mut outline = OutlineReader::new(document, parents);
+    for drawn in all {
+        let mesh = match meshes.entry(drawn.mesh) {
             Entry::Occupied(known) => known.into_mut(),
-            Entry::Vacant(unknown) => unknown.insert(Mesh::from_json(document, number)?),
+            Entry::Vacant(unknown) => unknown.insert(Mesh::from_json(document, drawn.mesh)?),
         };
         found += mesh.splats.len() as u64;
         others += mesh.others;
-        if transform.hides() {
+        if drawn.transform.hides() {
             hidden += mesh.splats.len();
             continue;
         }
@@ -103,10 +107,11 @@ pub(super) fn read_document(
         for &(primitive, extension) in &mesh.splats {
             let mut made = read_primitive(document, &mut buffers, primitive, extension)?;
             set_training(&mut made, primitive, extension);
-            match turned.of_inner(&transform)? {
+            match turned.of_inner(&drawn.transform)? {
                 Transform::Similar(placement) => made.place(&placement),
                 Transform::Other(affine) => made.transform(&affine),
             }
+            outline.add(&drawn, primitive, made.gaussians.len());
             whole.append(made)?;
             check_drawn(whole.gaussians.len() as u64, &buffers)?;
         }
@@ -117,6 +122,7 @@ pub(super) fn read_document(
              with it"
         )));
     }
+    whole.outline = Some(outline.finish());
     if hidden > 0 {
         whole.report.note(format!(
             "left out {} of the glTF that are scaled to nothing",

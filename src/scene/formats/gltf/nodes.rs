@@ -57,17 +57,31 @@ impl Transform {
     }
 }
 
-/// The number of each mesh that the scene draws, with its transform in the scene.
+/// A mesh that the scene draws.
+pub(super) struct Drawn {
+    /// The node that has it; none where the document has no scene.
+    pub(super) node: Option<usize>,
+    pub(super) mesh: usize,
+    /// Where it stands in the scene.
+    pub(super) transform: Transform,
+}
+
+/// The meshes that the scene draws, and the parent of each node that has one.
 pub(super) fn meshes(
     document: &Value,
     buffers: &mut Buffers<'_>,
-) -> Result<Vec<(usize, Transform)>, Failure> {
+) -> Result<(Vec<Drawn>, Vec<Option<usize>>), Failure> {
     let nodes = list(document, "nodes");
     let scenes = list(document, "scenes");
     if scenes.is_empty() {
         // A document without a scene is a library of meshes.
         let all = 0..list(document, "meshes").len();
-        return Ok(all.map(|mesh| (mesh, Transform::IDENTITY)).collect());
+        let drawn = all.map(|mesh| Drawn {
+            node: None,
+            mesh,
+            transform: Transform::IDENTITY,
+        });
+        return Ok((drawn.collect(), Vec::new()));
     }
     let scene = document
         .get("scene")
@@ -81,6 +95,7 @@ pub(super) fn meshes(
     })?;
     let mut found = Vec::new();
     let mut seen = vec![false; nodes.len()];
+    let mut parents = vec![None; nodes.len()];
     let roots = indices(scene, "nodes")?.into_iter().rev();
     let mut open: Vec<(usize, Transform)> = roots.map(|node| (node, Transform::IDENTITY)).collect();
     while let Some((at, parent)) = open.pop() {
@@ -96,23 +111,30 @@ pub(super) fn meshes(
         let own = parent.of_inner(&transform(node).map_err(wrong)?)?;
         if let Some(mesh) = node.get("mesh") {
             let mesh = number(mesh).ok_or_else(|| wrong("has a mesh that is no number"))?;
+            let mut add = |transform| {
+                found.push(Drawn {
+                    node: Some(at),
+                    mesh,
+                    transform,
+                });
+            };
             match node.get("extensions").and_then(|all| all.get(INSTANCES)) {
                 Some(instances) => {
                     for instance in instance_transforms(document, buffers, instances, &wrong)? {
-                        found.push((mesh, own.of_inner(&instance)?));
+                        add(own.of_inner(&instance)?);
                     }
                 }
-                None => found.push((mesh, own)),
+                None => add(own),
             }
         }
-        open.extend(
-            indices(node, "children")?
-                .into_iter()
-                .rev()
-                .map(|child| (child, own)),
-        );
+        for child in indices(node, "children")?.into_iter().rev() {
+            if let Some(parent) = parents.get_mut(child) {
+                *parent = Some(at);
+            }
+            open.push((child, own));
+        }
     }
-    Ok(found)
+    Ok((found, parents))
 }
 
 /// A number of something in a list.

@@ -42,7 +42,7 @@ pub(in super::super) const WRITERS: [Writer; 4] = [
     Writer {
         format: Format::Gltf,
         ending: ".glb",
-        encode: |gaussians, _| glb::encode(gaussians),
+        encode: |gaussians, options| glb::encode(gaussians, options.outline.as_ref()),
         ranges: Ranges::ALL,
     },
 ];
@@ -94,7 +94,7 @@ impl Ranges {
 /// The Gaussians' numbers along a space-filling curve through their centres, so that neighbours in a file are alike.
 fn along_a_curve(gaussians: &Gaussians) -> Vec<u32> {
     let all = gaussians.positions();
-    let [low, high] = corners(gaussians).map(|corner| corner.as_dvec3());
+    let [low, high] = corners(all).map(|corner| corner.as_dvec3());
     let cells = 1023.0 / (high - low).max(glam::DVec3::splat(f64::MIN_POSITIVE));
     let key = |position: &glam::Vec3| {
         let cell = ((position.as_dvec3() - low) * cells).as_uvec3();
@@ -107,12 +107,9 @@ fn along_a_curve(gaussians: &Gaussians) -> Vec<u32> {
     order
 }
 
-/// The corners of the box around all centres with the least and the greatest coordinates.
-fn corners(gaussians: &Gaussians) -> [Vec3; 2] {
-    [Vec3::min, Vec3::max].map(|pick| {
-        let all = gaussians.positions().iter().copied();
-        all.reduce(pick).unwrap_or_default()
-    })
+/// The corners of the box around centres with the least and the greatest coordinates.
+fn corners(centres: &[Vec3]) -> [Vec3; 2] {
+    [Vec3::min, Vec3::max].map(|pick| centres.iter().copied().reduce(pick).unwrap_or_default())
 }
 
 /// A byte of a share from 0 to 1.

@@ -69,9 +69,9 @@ fn tracing_every_gaussian_degrades_the_picture_as_the_paper_reports() {
                 .expect("the same size")
                 .l1
         };
-        assert_eq!(
-            error(Miss::Keep, 1.0),
-            0.0,
+        // Another pipeline's compiler may fuse other products and sums.
+        assert!(
+            error(Miss::Keep, 1.0) < 1e-6,
             "{name}: a miss that keeps everything changes nothing"
         );
         assert!(

@@ -62,7 +62,8 @@ fn records_are_the_twins() {
     println!("{worst:?}");
     // A ten-thousandth of a deviation is a hundredth of a level of 8 bits.
     assert!(worst.z <= 1e-4, "{worst:?}");
-    assert!(worst.gradients <= 32.0 * f32::EPSILON, "{worst:?}");
+    // A division on a GPU may be 2.5 units in the last place off, where a CPU's is half a unit.
+    assert!(worst.gradients <= 48.0 * f32::EPSILON, "{worst:?}");
     assert!(worst.planes <= 32.0 * f32::EPSILON, "{worst:?}");
     // Twice the fit's tolerance: pixels lie between its samples.
     assert!(worst.curves <= 3e-4, "{worst:?}");

@@ -5,7 +5,7 @@ use super::*;
 use ash::vk::{self, Result as Code};
 use glam::DVec3;
 use rara_gpu::faults::{self, CAN_BE_LOST, Fault, Pretence};
-use rara_gpu::{Bindings, PipelineCache};
+use rara_gpu::{Bindings, DeviceShape, PipelineCache};
 use rara_scene::clip::{ClipOp, Plane};
 use rara_scene::settings::Raster;
 use rara_scene::{Bounds, Kind, generate};
@@ -70,7 +70,6 @@ fn run_out(next: impl Fn(usize) -> usize) {
     }
     for call in [
         "vkAllocateMemory",
-        "vkMapMemory",
         "vkCreateBuffer",
         "vkBindBufferMemory",
         "vkCreateImage",
@@ -82,6 +81,8 @@ fn run_out(next: impl Fn(usize) -> usize) {
     ] {
         assert!(failed.contains_key(call), "{call} is not in {failed:?}");
     }
+    // Where the device's memory is not the host's, the blocks that are mapped may be older than this.
+    assert!(failed.contains_key("vkMapMemory") || device.shape() != DeviceShape::Cpu);
     eprintln!("{} places: {failed:?}", failed.values().sum::<i32>());
     assert_eq!(device.close(), Vec::<String>::new());
 }

@@ -1,5 +1,6 @@
 //! Where nothing lies below, tiles leave the picture itself. Its bytes are those of the draw that blends the tiles' picture
-//! into a cleared target, from frame to frame.
+//! into a cleared target, from frame to frame; on GPUs they may be a step of 8 bits apart, since how a blend rounds is the
+//! device's own.
 
 use super::*;
 use glam::DVec3;
@@ -67,12 +68,15 @@ impl Pair {
         });
         assert_eq!((stats.counts, stats.raster), (truth.counts, truth.raster));
         assert_eq!((left.width, left.height), size);
-        let bits = |picture: &Picture| {
-            let values = picture.pixels.iter().flatten();
-            values.map(|value| value.to_bits()).collect::<Vec<_>>()
+        let is_exact = self.draws.device().shape() == DeviceShape::Cpu
+            || settings.precision.target == TargetFormat::Float;
+        let [left, drawn] = [&left, &drawn].map(|picture| picture.pixels.as_flattened());
+        let differ = |(a, b): (&f32, &f32)| match is_exact {
+            true => a.to_bits() != b.to_bits(),
+            false => (255.0 * (a - b)).round().abs() > 1.0,
         };
         assert!(
-            bits(&left) == bits(&drawn),
+            !left.iter().zip(drawn).any(differ),
             "{size:?} {offset} {settings:?}"
         );
         assert!(

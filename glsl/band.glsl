@@ -19,7 +19,7 @@ float beam_band(Footprint f, float extent) {
     if (f.clamped) {
         vec3 b1;
         vec3 b2;
-        screen_gradients(f, f.view_centre.xy / f.view_centre.z, b1, b2);
+        screen_gradients(f, quotient(f.view_centre.xy, f.view_centre.z), b1, b2);
         b1 *= f.scale;
         b2 *= f.scale;
         vec3 across = cross(b1, b2);

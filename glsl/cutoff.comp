@@ -217,9 +217,10 @@ void main() {
     }
 
     // The weight follows true rays. The gradients at a pixel are these less the pixel's position times `lean`.
-    vec3 b1 = VIEW.focal.x / f.w * f.m1;
-    vec3 b2 = VIEW.focal.y / f.w * f.m2;
-    vec3 lean = f.w_gradient / f.w;
+    vec2 magnification = quotient(VIEW.focal.xy, f.w);
+    vec3 b1 = magnification.x * f.m1;
+    vec3 b2 = magnification.y * f.m2;
+    vec3 lean = quotient(f.w_gradient, f.w);
     // They grow with the distance from the principal point, so the scale is the farthest pixel's.
     vec2 far = max(abs(VIEW.focal.zw), abs(VIEW.size.xy - VIEW.focal.zw));
     float size = max(largest(b1) + far.x * largest(lean), largest(b2) + far.y * largest(lean));

@@ -67,10 +67,20 @@ float homogeneous(float depth) {
     return is_orthographic() ? 1.0 : depth;
 }
 
+// a / b for all b that are positive. Vulkan promises a quotient for b up to 2^126 only.
+vec2 quotient(vec2 a, float b) {
+    return 0.25 * a / (0.25 * b);
+}
+
+vec3 quotient(vec3 a, float b) {
+    return 0.25 * a / (0.25 * b);
+}
+
 // Screen gradients at a slope, unscaled.
 void screen_gradients(Footprint f, vec2 slope, out vec3 b1, out vec3 b2) {
-    b1 = VIEW.focal.x / f.w * (f.m1 - slope.x * f.w_gradient);
-    b2 = VIEW.focal.y / f.w * (f.m2 - slope.y * f.w_gradient);
+    vec2 magnification = quotient(VIEW.focal.xy, f.w);
+    b1 = magnification.x * (f.m1 - slope.x * f.w_gradient);
+    b2 = magnification.y * (f.m2 - slope.y * f.w_gradient);
 }
 
 mat3 half_axes(Gaussian gaussian) {
@@ -95,7 +105,7 @@ Footprint unprojected(Gaussian gaussian) {
 
 Footprint footprint(Gaussian gaussian) {
     Footprint f = unprojected(gaussian);
-    vec2 slope = f.view_centre.xy / f.w;
+    vec2 slope = quotient(f.view_centre.xy, f.w);
     f.screen_centre = VIEW.focal.xy * slope + VIEW.focal.zw;
     f.slope = clamp(slope, VIEW.slope_bounds.xz, VIEW.slope_bounds.yw);
     f.clamped = f.slope != slope;

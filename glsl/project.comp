@@ -76,7 +76,7 @@ vec3 normal(Gaussian gaussian, vec3 sight) {
 
 // The colour that a splat is drawn with, seen in a direction.
 vec3 shown(uint index, Gaussian gaussian, vec3 direction) {
-    vec3 sight = normalize(direction / largest(direction));
+    vec3 sight = normalize(quotient(direction, largest(direction)));
     if (COLOURS == COLOURS_NUMBERS) {
         return numbers(floatBitsToUint(gaussian.scale.w));
     }

@@ -5,10 +5,11 @@ use std::thread::{self, ScopedJoinHandle};
 
 use serde::Serialize;
 
-use super::{Case, Limit, Regime, TARGET};
+use super::{COARSE, Case, Limit, Regime, TARGET};
 use crate::measure::{Differences, differences};
 use rara::{Clip, Counts, Decay, ExactForm, Headless, Mode, Picture, Raster, Result, Settings};
 use rara_base::limits::ALPHA_MIN_INVERSE;
+use rara_gpu::DeviceShape;
 
 /// The forms of the cut that are measured. Mode `rara` only has to be finite and right in the picture: its length
 /// ratio jumps where a ray leaves the ellipsoid.
@@ -85,10 +86,12 @@ impl RegimeRow {
 /// quads in the next, in each form, and by both where cases are left out; crowds by both. Any message of the validation layer is an error.
 pub fn run(headless: &mut Headless, regime: &Regime, every: usize) -> Result<RegimeRow> {
     let limit = regime.limit;
+    let is_cpus = headless.device().shape() == DeviceShape::Cpu;
+    let coarse = if is_cpus { 1.0 } else { COARSE };
     let mut row = RegimeRow {
         regime: regime.name,
         forms: FORMS.map(|(form, ..)| FormRow::from_form(form)).to_vec(),
-        target: limit.map_or(TARGET, |limit: Limit| limit.weight),
+        target: coarse * limit.map_or(TARGET, |limit: Limit| limit.weight),
         least_psnr: limit.map_or(PICTURE_PSNR, |limit| limit.psnr),
         reason: limit.map(|limit| limit.reason),
         ..RegimeRow::default()

@@ -19,6 +19,8 @@ layout(constant_id = 3) const bool QUADS = false;
 // True when rectangles of tiles are wanted, and masks only where these do not tell everything.
 layout(constant_id = 5) const bool RECTS = false;
 layout(constant_id = 6) const uint COLOURS = COLOURS_SCENE; // COLOURS_*
+// True where the sort finds the splats' numbers beside their keys.
+layout(constant_id = 7) const bool NUMBERS = false;
 
 BUFFER(readonly, 1, Gaussian, gaussians)
 BUFFER(readonly, 2, uint, sh)
@@ -144,4 +146,7 @@ void main() {
     float far = FRAME.order.by_distance == 0u ? f.view_centre.z : dot(f.view_centre, f.view_centre);
     uint depth = max(floatBitsToUint(far), FRAME.order.key_near) - FRAME.order.key_near;
     depth_keys.at[splat_index] = min(depth, FRAME.order.key_span) >> FRAME.order.key_shift;
+    if (NUMBERS) {
+        depth_keys.at[number_place(splat_index)] = floatBitsToUint(gaussian.scale.w);
+    }
 }

@@ -21,6 +21,14 @@ BUFFER(writeonly, 9, uint, tie_members)
 #define STEPS RADIX_KEYS
 #include "ties.glsl"
 
+uint number(uint splat_index) {
+    return floatBitsToUint(gaussians.at[splat_gaussians.at[splat_index]].scale.w);
+}
+
+void keep_number(uint splat_index, uint its_number) {
+    numbers.at[splat_index] = its_number;
+}
+
 // Most that an invocation orders alone: its numbers have room in its part of `items`.
 const uint FEW = RADIX_PARTITION / RADIX_GROUP_SIZE;
 

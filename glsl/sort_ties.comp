@@ -5,6 +5,7 @@
 // one invocation have one depth, its workgroup merges them together, and where they are a layer, it sorts them by the
 // digits of their numbers.
 #include "sort.glsl"
+#include "splat_gaussians.glsl"
 
 layout(local_size_x = SORT_GROUP_SIZE) in;
 
@@ -12,14 +13,18 @@ BUFFER(readonly, 1, FrameCounts, counts)
 BUFFER(readonly, 2, uint, keys)
 BUFFER(coherent, 3, uint, order)
 BUFFER(coherent, 4, uint, scratch)
-BUFFER(readonly, 5, uint, splat_gaussians)
-// The numbers of those that are sorted by digits, by splat.
-BUFFER(coherent, 6, uint, numbers)
 // The sort's, of which each invocation uses its own run's part.
-BUFFER(coherent, 7, uint, histogram)
-BUFFER(readonly, 8, Gaussian, gaussians)
+BUFFER(coherent, 5, uint, histogram)
+BUFFER(readonly, 6, uint, depth_keys)
 #define STEPS 1u
 #include "ties.glsl"
+
+uint number(uint splat_index) {
+    return depth_keys.at[number_place(splat_index)];
+}
+
+// They are known of all splats.
+void keep_number(uint, uint) {}
 
 // Most that a workgroup merges. Beyond, the steps of the merges outweigh the histograms of the digits.
 const uint MANY = 4096u;
@@ -85,7 +90,7 @@ void sort_by_digit(bool second, uint begin, uint end, uint digit_number) {
         histogram.at[slots + d] = 0u;
     }
     for (uint i = run.x; i < run.y; i++) {
-        histogram.at[slots + digit(numbers.at[at(second, i)], digit_number)]++;
+        histogram.at[slots + digit(number(at(second, i)), digit_number)]++;
     }
     publish();
     for (uint d = local; d < DIGITS; d += SORT_GROUP_SIZE) {
@@ -111,7 +116,7 @@ void sort_by_digit(bool second, uint begin, uint end, uint digit_number) {
     publish();
     for (uint i = run.x; i < run.y; i++) {
         uint splat_index = at(second, i);
-        uint slot = slots + digit(numbers.at[splat_index], digit_number);
+        uint slot = slots + digit(number(splat_index), digit_number);
         uint place = histogram.at[slot];
         histogram.at[slot] = place + 1u;
         put(!second, place, splat_index);

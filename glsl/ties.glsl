@@ -1,13 +1,14 @@
-// Puts splats of one depth into the order of their numbers. Included after the size of the workgroup and the buffers `order`,
-// `scratch`, `splat_gaussians`, `gaussians` and `numbers` are declared.
+// Puts splats of one depth into the order of their numbers. Included after the size of the workgroup and the buffers `order` and
+// `scratch` are declared.
 #ifndef RARA_TIES
 #define RARA_TIES
 #include "frame.glsl"
 
-// A splat's number in the scene.
-uint number(uint splat_index) {
-    return floatBitsToUint(gaussians.at[splat_gaussians.at[splat_index]].scale.w);
-}
+// A splat's number in the scene. The includer says where it is.
+uint number(uint splat_index);
+
+// Called with the number of each splat before it is sorted by digits.
+void keep_number(uint splat_index, uint its_number);
 
 uint at(bool second, uint i) {
     return second ? scratch.at[i] : order.at[i];
@@ -67,7 +68,7 @@ void sort_together(uint begin, uint end) {
             its_numbers[k] = number(own[k]);
         }
         for (uint k = 0u; k < STEPS; k++) {
-            numbers.at[own[k]] = its_numbers[k]; // those beyond the end write the last one's once more
+            keep_number(own[k], its_numbers[k]); // those beyond the end repeat the last one
             differs |= its_numbers[k] ^ first_number;
         }
     }

@@ -29,9 +29,10 @@ memory! {
         true => plan.gaussians() * size_of::<Quad>() as u64,
         false => 0,
     };
-    /// The keys of the splats' depths; with pipelines for GPUs twice as much, since their sort has a use for it later.
+    /// The keys of the splats' depths, and behind them the splats' numbers where the sort needs these; with pipelines for GPUs
+    /// always twice as much as the keys, since their sort has a use for it later.
     depth_keys: |plan| match plan.way.shape {
-        DeviceShape::Cpu => 4 * plan.gaussians(),
+        DeviceShape::Cpu => (4 + 4 * u64::from(finds_numbers(plan))) * plan.gaussians(),
         DeviceShape::Gpu { .. } => 8 * plan.gaussians(),
     };
     /// Which tiles each splat touches; empty where tiles are not wanted. Pipelines for GPUs have words of the splats' rectangles
@@ -40,6 +41,11 @@ memory! {
         let rects = u64::from(plan.keeps_rects()) * plan.gaussians().div_ceil(4);
         plan.when_tiled(16 * (plan.gaussians() + rects))
     };
+}
+
+/// True where the sort finds the splats' numbers beside their keys.
+fn finds_numbers(plan: &Plan) -> bool {
+    plan.reordered && plan.way.shape == DeviceShape::Cpu
 }
 
 /// The shader reads spherical harmonics in one format; without cut splats it reads no cutoff records.
@@ -58,6 +64,7 @@ impl FromPlan for project::Constants {
             quads: plan.needs_quads(),
             rects: plan.keeps_rects(),
             colours: plan.way.colours.code(),
+            numbers: finds_numbers(plan),
         }
     }
 }

@@ -1,12 +1,12 @@
 //! A radix sort by runs of consecutive keys, each owned by one invocation. The runs are few and long, as suits processors.
 //! Its scratch is `histogram`.
 
+use crate::passes::project;
 use crate::passes::recording::{Groups, Recording, counted};
 use crate::passes::shaders::{sort_count, sort_scan, sort_scatter, sort_ties};
-use crate::passes::shared::{self, SCENE};
+use crate::passes::shared;
 use crate::passes::sort::keys::{KEYS, MEMORY, ORDER, groups_of_count, groups_of_pass};
 use crate::passes::storage::buffers;
-use crate::passes::{compact, project};
 
 /// Sorts the splats by their depths, and those of one depth by their number in the scene. Of the passes that the scene's
 /// bounds ask for, the device skips the first ones, as many as there are leading digits in which the keys agree (sort.glsl).
@@ -44,13 +44,11 @@ pub(super) fn record(recording: &mut Recording<'_, '_>) {
         let sorted = recording.plan.sorted();
         let buffers = buffers!(sort_ties {
             shared::MEMORY => [frame, counts],
-            SCENE => [gaussians],
-            compact::MEMORY => [splat_gaussians],
             MEMORY => [histogram];
+            depth_keys,
             keys: KEYS[sorted],
             order: ORDER[sorted],
             scratch: ORDER[sorted ^ 1],
-            numbers: KEYS[sorted ^ 1],
         });
         recording.dispatch(buffers, (), counted!(sort_groups));
     }

@@ -20,6 +20,27 @@ bool all_of(bool agrees) {
     return against == 0u;
 }
 
+// Splats lie apart in memory. An invocation asks for those of several batches together, so as to wait for all of them at once: by
+// a float of each, which brings the rest of it into the cache.
+const uint AHEAD = 8u;
+uint ahead[AHEAD];
+float ahead_x[AHEAD];
+
+// The invocation's splat of a batch, and its centre's x.
+uint number_in_batch(uint begin, uint first, uint end, out float x) {
+    uint batch = (first - begin) / BATCH % AHEAD;
+    if (batch == 0u) {
+        for (uint k = 0u; k < AHEAD; k++) {
+            ahead[k] = tile_splats.at[min(first + k * BATCH + IN_BATCH, end - 1u)];
+        }
+        for (uint k = 0u; k < AHEAD; k++) {
+            ahead_x[k] = SPLAT_CENTRE(ahead[k]).x;
+        }
+    }
+    x = ahead_x[batch];
+    return ahead[batch];
+}
+
 Seen mine;
 Record mine_record;
 
@@ -66,6 +87,12 @@ bool all_done() {
 #define BATCH (gl_WorkGroupSize.x * gl_WorkGroupSize.y)
 #define IN_BATCH gl_LocalInvocationIndex
 const bool WHOLE_ALONE = false; // it would be the same code twice
+
+uint number_in_batch(uint, uint first, uint end, out float x) {
+    uint number = tile_splats.at[min(first + IN_BATCH, end - 1u)];
+    x = SPLAT_CENTRE(number).x;
+    return number;
+}
 
 shared Seen batch[TILE_WIDTH * TILE_HEIGHT];
 shared uint at_work; // 1 when an invocation is not done

@@ -146,11 +146,11 @@ bool is_away(Seen splat, vec2 delta) {
 
 // A splat as an invocation hands it to all, and its record if it has one. Where the cut's edge does not run through the tile it
 // is whole, or away.
-Seen load(uint number, vec2 tile_middle, out Record record) {
+Seen load(uint number, float x, vec2 tile_middle, out Record record) {
     Seen splat;
     vec4 conic_cut = SPLAT_CONIC(number);
     vec4 colour_cut = SPLAT_COLOUR(number);
-    splat.centre_conic = SPLAT_CENTRE(number);
+    splat.centre_conic = vec4(x, SPLAT_CENTRE(number).yzw);
     splat.conic_opacity = conic_cut.xy;
     splat.colour = colour_cut.rgb;
     splat.linear = vec3(conic_cut.zw, colour_cut.w);
@@ -210,9 +210,10 @@ void main() {
         occluder[row] = DEPTH_FORM != DEPTH_NONE ? occluder_farness(pixel + uvec2(0u, row)) : 0.0;
     }
     for (uint first = begin; first < end && !all_done(); first += BATCH) {
-        uint number = tile_splats.at[min(first + IN_BATCH, end - 1u)];
+        float x;
+        uint number = number_in_batch(begin, first, end, x);
         Record record;
-        Seen own = load(number, tile_middle, record);
+        Seen own = load(number, x, tile_middle, record);
         hand_over(own, record);
         uint count = min(end - first, BATCH);
         for (uint i = 0u; i < count; i++) {

@@ -274,27 +274,49 @@ void chord_weights(Record record, uint flags, vec2 delta, vec2 pixel_centre, out
     }
 }
 
+// The weights of a combined record. Where a single surface weighs the pixels, it is read once for all of them.
+void combined_weights(Record record, uint flags, vec2 delta, vec2 pixel_centre, float alpha[ROWS], out float weight[ROWS]) {
+    uint base = record_base(record);
+    uint count = flags >> CUT_COUNT_SHIFT;
+    RecordSides sides = record_sides(record);
+    uint cutting = sides.cutting & ((1u << count) - 1u);
+    bool is_surface = READS_ONCE && CLIP_MODE == MODE_EXACT && bitCount(cutting) == 1 && (flags & CUT_FRONT) == 0u;
+    UnitSurface surface;
+    if (is_surface) {
+        surface = entry_of(base, uint(findLSB(cutting)));
+    }
+    uint rows = 0u;
+    for (uint row = 0u; row < ROWS; row++) {
+        weight[row] = 1.0;
+        rows |= alpha[row] > 0.0 ? 1u << row : 0u;
+    }
+    // A loop over all rows would be unrolled, with the body once for each.
+    for (; rows != 0u; rows &= rows - 1u) {
+        uint at = uint(findLSB(rows));
+        vec2 below = vec2(0.0, float(at));
+        Sight s = sight_through(RECORD_AT(record, 0), RECORD_AT(record, 1), RECORD_AT(record, 2), pixel_centre + below - principal_point(), delta + below);
+        float share;
+        if (is_surface) {
+            Line line = line_through(s);
+            float moved;
+            Crossed crossing = crossed(line, surface, moved);
+            share = share_of_surface(line, surface, crossing, moved);
+        } else {
+            share = combined_weight(s, base, flags, sides, push.params.sigma);
+        }
+        for (uint row = 0u; row < ROWS; row++) {
+            weight[row] = row == at ? share : weight[row];
+        }
+    }
+}
+
 // The weight of each pixel of a column; false when all are whole. `delta`, `uv` and `pixel_centre` are the first row's;
 // v changes by `v_step` a row.
 bool cut_weights(Record record, vec2 delta, vec2 uv, float v_step, vec2 pixel_centre, float alpha[ROWS],
                  out float weight[ROWS]) {
     uint flags = record_flags(record);
     if (COMBINED && (flags & CUT_COMBINED) != 0u) {
-        uint rows = 0u;
-        for (uint row = 0u; row < ROWS; row++) {
-            weight[row] = 1.0;
-            rows |= alpha[row] > 0.0 ? 1u << row : 0u;
-        }
-        // A loop over all rows would be unrolled, with the body once for each.
-        for (; rows != 0u; rows &= rows - 1u) {
-            uint at = uint(findLSB(rows));
-            vec2 below = vec2(0.0, float(at));
-            Sight s = line_of_sight(record_base(record), delta + below, pixel_centre + below);
-            float share = combined_weight(s, record_base(record), flags, push.params.sigma);
-            for (uint row = 0u; row < ROWS; row++) {
-                weight[row] = row == at ? share : weight[row];
-            }
-        }
+        combined_weights(record, flags, delta, pixel_centre, alpha, weight);
     } else if (CLIP_MODE == MODE_EXACT && (flags & CUT_CURVE) != 0u) {
         return curve_weights(record, uv.x, uv.y, v_step, alpha, weight);
     } else if (CLIP_MODE == MODE_EXACT && (flags & CUT_FRONT) != 0u) {

@@ -5,10 +5,14 @@
 
 #ifdef RARA_SUBGROUP
 
+// An invocation weighs several pixels, for which it reads a surface once.
+const bool READS_ONCE = true;
+
 // Where the record is, and its first vec4s, which suffice for one surface: an invocation loads them once for all.
 struct Record {
     uint base;
     vec4 begin[CUT_HEADER + 1u];
+    RecordSides sides;
 };
 #define RECORD_AT(record, i) record.begin[i]
 
@@ -19,6 +23,7 @@ uint record_base(Record record) {
 // The record that a splat's carried slopes name, if they name one.
 Record record_of(vec3 linear) {
     Record record;
+    record.sides = all_cutting();
     if (linear.x < -Z_RANGE) {
         record.base = record_number(linear) * push.params.cut_stride;
         for (uint i = 0u; i <= CUT_HEADER; i++) {
@@ -29,6 +34,8 @@ Record record_of(vec3 linear) {
 }
 
 #else
+
+const bool READS_ONCE = false;
 
 // On GPUs each pixel reads the record itself: it would take too many registers.
 struct Record {
@@ -48,6 +55,14 @@ Record record_of(vec3 linear) {
 
 uint record_flags(Record record) {
     return to_uint(RECORD_AT(record, 0).w);
+}
+
+RecordSides record_sides(Record record) {
+#ifdef RARA_SUBGROUP
+    return record.sides;
+#else
+    return all_cutting();
+#endif
 }
 
 #endif

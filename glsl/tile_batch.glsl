@@ -74,6 +74,10 @@ Record record_taken_over(uint i, Seen splat) {
         for (uint k = 0u; k <= CUT_HEADER; k++) {
             record.begin[k] = OF(i, mine_record.begin[k]);
         }
+        record.sides = all_cutting();
+        if (SEVERAL && COMBINED) {
+            record.sides = RecordSides(OF(i, mine_record.sides.cutting), OF(i, mine_record.sides.visible));
+        }
     }
     return record;
 }

@@ -100,7 +100,7 @@ float cut_weight(uint cut, vec2 delta, vec2 uv, vec2 pixel_centre) {
     uint base = cut * push.params.cut_stride;
     uint flags = to_uint(cut_records.at[base].w);
     if (COMBINED && (flags & CUT_COMBINED) != 0u) {
-        return combined_weight(line_of_sight(base, delta, pixel_centre), base, flags, push.params.sigma);
+        return combined_weight(line_of_sight(base, delta, pixel_centre), base, flags, all_cutting(), push.params.sigma);
     }
     if (CLIP_MODE == MODE_RARA) {
         return chord_weight(base, flags, delta, pixel_centre);

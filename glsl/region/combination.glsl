@@ -8,6 +8,16 @@
 #include "orthant.glsl"
 #include "tail.glsl"
 
+// The sides of a record's surfaces in all pixels that are looked at, a bit for each surface.
+struct RecordSides {
+    uint cutting;
+    uint visible; // of those that do not cut
+};
+
+RecordSides all_cutting() {
+    return RecordSides(~0u, 0u);
+}
+
 UnitSurface entry_of(uint base, uint entry) {
     uint at = base + CUT_HEADER + ENTRY_VECTORS * entry;
     return UnitSurface(cut_records.at[at], cut_records.at[at + 1u].xyz, cut_records.at[at + 2u].xyz);
@@ -180,23 +190,35 @@ float bit_of(uint answers, uint sides) {
     return float(answers >> sides & 1u);
 }
 
+// The share of a single surface by mode `exact`, from its crossing.
+float share_of_surface(Line line, UnitSurface surface, Crossed crossing, float moved) {
+    if (moved > 0.0) {
+        return bent_share(line, surface);
+    }
+    if (crossing.other != NO_CROSSING) {
+        float near = phi(crossing.z);
+        return crossing.between ? max(near - phi(-crossing.other), 0.0) : min(near + phi(crossing.other), 1.0);
+    }
+    return abs(crossing.z) < PHI_ONE ? phi(crossing.z) : crossing.z > 0.0 ? 1.0 : 0.0;
+}
+
 // The share by mode `exact`, by the sides of at most three open crossings. `open` is how many there are.
-float share_of_sides(Line line, uint base, uint count, out uint open) {
+float share_of_sides(Line line, uint base, uint count, RecordSides sides, out uint open) {
     open = 0u;
     uvec2 stack = uvec2(0u);
     Threshold t0;
     Threshold t1;
     Threshold t2;
     for (uint i = 0u; i < count; i++) {
+        if ((sides.cutting >> i & 1u) == 0u) {
+            stack = bytes_answered(stack, (sides.visible >> i & 1u) != 0u ? 0xffu : 0u, operators_of(base, i));
+            continue;
+        }
         UnitSurface surface = entry_of(base, i);
         float moved;
         Crossed crossing = crossed(line, surface, moved);
-        if (count == 1u && moved > 0.0) {
-            return bent_share(line, surface);
-        }
-        if (count == 1u && crossing.other != NO_CROSSING) {
-            float near = phi(crossing.z);
-            return crossing.between ? max(near - phi(-crossing.other), 0.0) : min(near + phi(crossing.other), 1.0);
+        if (count == 1u) {
+            return share_of_surface(line, surface, crossing, moved);
         }
         uint pattern = 0u;
         for (uint side = 0u; side < (crossing.other == NO_CROSSING ? 1u : 2u); side++) {
@@ -253,7 +275,7 @@ bool combined_keeps(uint base, uint count, vec3 point) {
 
 // The weight of a splat with a combined record, by the frame's mode: in mode `rara` the share of the chord that is kept (the
 // paper, section 3.4), else the share of the splat.
-float combined_weight(Sight s, uint base, uint flags, float sigma) {
+float combined_weight(Sight s, uint base, uint flags, RecordSides sides, float sigma) {
     uint count = flags >> CUT_COUNT_SHIFT;
     bool is_chord = CLIP_MODE == MODE_RARA;
     s.low_pass = is_chord ? 0.0 : s.low_pass;
@@ -290,7 +312,7 @@ float combined_weight(Sight s, uint base, uint flags, float sigma) {
         measure = MEASURE_FRONT;
     } else {
         uint open;
-        float share = share_of_sides(line, base, count, open);
+        float share = share_of_sides(line, base, count, sides, open);
         if (open <= 3u) {
             return clamp(share, 0.0, 1.0);
         }

@@ -47,15 +47,20 @@ uint surface_side(TileSight tile, TilePoints points, UnitSurface surface) {
     return plane.low > reach * tile.det.z ? SIDE_VISIBLE : plane.high < -reach * tile.det.z ? SIDE_INVISIBLE : SIDE_CUTOFF;
 }
 
-uint combination_side(Record record, uint flags, vec2 delta, vec2 middle) {
+// The side of a tile; the record gets those of its surfaces.
+uint combination_side(inout Record record, uint flags, vec2 delta, vec2 middle) {
     if ((flags & CUT_FRONT) != 0u) {
         return SIDE_CUTOFF; // only what is in front of the eye counts
     }
     TileSight tile = tile_sight(record, delta, middle);
     TilePoints points = tile_points(tile, TILE_MARGIN * (CLIP_MODE == MODE_RARA ? push.params.sigma : PHI_ONE));
     Answers answers = Answers(0u, 0u);
+    record.sides = RecordSides(0u, 0u);
     for (uint i = 0u; i < flags >> CUT_COUNT_SHIFT; i++) {
-        answer(answers, surface_side(tile, points, entry_of(record_base(record), i)), operators_of(record_base(record), i));
+        uint side = surface_side(tile, points, entry_of(record_base(record), i));
+        answer(answers, side, operators_of(record_base(record), i));
+        record.sides.cutting |= side == SIDE_CUTOFF ? 1u << i : 0u;
+        record.sides.visible |= side == SIDE_VISIBLE ? 1u << i : 0u;
     }
     return side_answered(answers);
 }

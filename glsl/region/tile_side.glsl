@@ -181,7 +181,7 @@ uint planes_side(Record record, uint flags, vec2 delta, vec2 middle) {
 #endif
 
 // The side of the tile with this middle, px, in a splat that is cut.
-uint tile_side(vec3 linear, vec3 curvature, Record record, vec4 centre_conic, float conic_z, vec2 middle) {
+uint tile_side(vec3 linear, vec3 curvature, inout Record record, vec4 centre_conic, float conic_z, vec2 middle) {
     vec2 delta = middle - centre_conic.xy;
     if (CLIP_MODE == MODE_EXACT && linear.x > -Z_RANGE) {
         return carried_side(linear, curvature, delta);

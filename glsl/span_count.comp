@@ -18,6 +18,9 @@ BUFFER(writeonly, 7, uint, masks_above)
 BUFFER(writeonly, 8, uint, masks_below)
 #include "splat_at.glsl"
 
+// Splats lie apart in memory: an invocation asks for the masks of so many at once, by a word of each.
+const uint AHEAD = 8u;
+
 void main() {
     uint run = gl_GlobalInvocationID.x;
     uint rows = tile_rows();
@@ -27,9 +30,20 @@ void main() {
     uvec2 bounds = run_bounds(run, FRAME.tiles.span_runs, counts.at[0].visible + counts.at[0].cutoff);
     uint found = 0u;
     // Pairs beyond the room need no counting: quads are drawn, and the next frame has more room.
+    uint splats_ahead[AHEAD];
+    uint ahead_x[AHEAD];
     for (uint i = bounds.x; i < bounds.y && found <= FRAME.room.pair_capacity; i++) {
-        uint splat = order.at[i];
-        uvec4 tiles = tile_masks.at[splat];
+        uint turn = (i - bounds.x) % AHEAD;
+        if (turn == 0u) {
+            for (uint k = 0u; k < AHEAD; k++) {
+                splats_ahead[k] = order.at[min(i + k, bounds.y - 1u)];
+            }
+            for (uint k = 0u; k < AHEAD; k++) {
+                ahead_x[k] = tile_masks.at[splats_ahead[k]].x;
+            }
+        }
+        uint splat = splats_ahead[turn];
+        uvec4 tiles = uvec4(ahead_x[turn], tile_masks.at[splat].yzw);
         mask_origins.at[i] = tiles.y == 0u ? tiles.x : NO_MASK;
         masks_above.at[i] = tiles.z;
         masks_below.at[i] = tiles.w;

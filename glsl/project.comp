@@ -10,7 +10,10 @@ struct Params {
 #include "spherical_harmonics.glsl"
 #include "rects.glsl"
 
-layout(local_size_x = SPLAT_GROUP_SIZE) in;
+layout(local_size_x_id = 8) in;
+// Splats of an invocation. On processors, whose workgroups are small, it asks for several at once, by a word of each: one wait
+// brings them all into the cache.
+const uint TURNS = SPLAT_GROUP_SIZE / gl_WorkGroupSize.x;
 layout(constant_id = 0) const bool CUT = false;
 // True when tiles are wanted.
 layout(constant_id = 2) const bool TILES = false;
@@ -37,11 +40,12 @@ BUFFER(writeonly, 9, uvec4, tile_masks)
 #include "carried.glsl"
 #include "splat_gaussians.glsl"
 
-vec3 colour(uint index, vec3 direction) {
+// `first` is its first word.
+vec3 colour(uint index, uint first, vec3 direction) {
     float basis[MAX_SH_COEFFICIENTS];
     sh_basis(direction, VIEW.sh_degree, basis);
-    uint base = index * sh_words(FRAME.scene.sh_coefficients);
-    vec3 sum = 0.5 + basis[0] * sh_constant(base);
+    uint base = sh_base(index);
+    vec3 sum = 0.5 + basis[0] * sh_constant(base, first);
     // Each degree has its own loop, since the compiler unrolls loops of a fixed length.
     if (VIEW.sh_degree > 0u) {
         mat3 units = sh_units(base);
@@ -77,7 +81,7 @@ vec3 normal(Gaussian gaussian, vec3 sight) {
 }
 
 // The colour that a splat is drawn with, seen in a direction.
-vec3 shown(uint index, Gaussian gaussian, vec3 direction) {
+vec3 shown(uint index, uint first, Gaussian gaussian, vec3 direction) {
     vec3 sight = normalize(quotient(direction, largest(direction)));
     if (COLOURS == COLOURS_NUMBERS) {
         return numbers(floatBitsToUint(gaussian.scale.w));
@@ -88,17 +92,14 @@ vec3 shown(uint index, Gaussian gaussian, vec3 direction) {
     if (COLOURS == COLOURS_LAYERS) {
         return vec3(equal(uvec3(layer_number), push.params.first_layer + uvec3(0u, 1u, 2u)));
     }
-    return colour(index, sight);
+    return colour(index, first, sight);
 }
 
-void main() {
-    uint splat_index = LINEAR_GROUP * SPLAT_GROUP_SIZE + gl_LocalInvocationIndex;
-    if (splat_index >= counts.at[0].visible + counts.at[0].cutoff) {
-        return;
-    }
-    uint index = splat_gaussians.at[splat_index];
+// `x` is its Gaussian's, and `first` the first word of that one's spherical harmonics.
+void project(uint splat_index, uint index, float x, uint first) {
     enter_layer_of_block(index / BLOCK_SIZE);
     Gaussian gaussian = gaussians.at[index];
+    gaussian.position_opacity.x = x;
     Footprint f = footprint(gaussian);
     float opacity = opacity_on_screen(f, gaussian);
     float extent = opacity_extent(opacity);
@@ -114,7 +115,7 @@ void main() {
     splat.centre_conic = vec4(f.screen_centre, conic.xy);
     splat.conic_cut = vec4(conic.z, opacity, weight.linear.xy);
     vec3 direction = is_orthographic() ? LAYER_VIEW.rotation_z.xyz : f.relative;
-    splat.colour_cut = vec4(shown(index, gaussian, direction), weight.linear.z);
+    splat.colour_cut = vec4(shown(index, first, gaussian, direction), weight.linear.z);
     splat.curvature_depth = vec4(weight.curvature, f.view_centre.z);
     SPLAT_CENTRE(splat_index) = splat.centre_conic;
     SPLAT_CONIC(splat_index) = splat.conic_cut;
@@ -148,5 +149,24 @@ void main() {
     depth_keys.at[splat_index] = min(depth, FRAME.order.key_span) >> FRAME.order.key_shift;
     if (NUMBERS) {
         depth_keys.at[number_place(splat_index)] = floatBitsToUint(gaussian.scale.w);
+    }
+}
+
+void main() {
+    uint count = counts.at[0].visible + counts.at[0].cutoff;
+    uint splat_index = LINEAR_GROUP * SPLAT_GROUP_SIZE + gl_LocalInvocationIndex;
+    uint index[TURNS];
+    float x[TURNS];
+    uint first[TURNS];
+    for (uint turn = 0u; turn < TURNS; turn++) {
+        index[turn] = splat_gaussians.at[min(splat_index + turn * gl_WorkGroupSize.x, count - 1u)];
+    }
+    for (uint turn = 0u; turn < TURNS; turn++) {
+        x[turn] = gaussians.at[index[turn]].position_opacity.x;
+        first[turn] = sh.at[sh_base(index[turn])];
+    }
+    for (uint turn = 0u; turn < TURNS && splat_index < count; turn++) {
+        project(splat_index, index[turn], x[turn], first[turn]);
+        splat_index += gl_WorkGroupSize.x;
     }
 }

@@ -20,6 +20,11 @@ uint sh_words(uint coefficients) {
         : 2u + numbers / 4u;
 }
 
+// The first word of a Gaussian.
+uint sh_base(uint index) {
+    return index * sh_words(FRAME.scene.sh_coefficients);
+}
+
 float sh_half(uint base, uint k) {
     vec2 pair = unpackHalf2x16(sh.at[base + (k >> 1)]);
     return (k & 1u) == 0u ? pair.x : pair.y;
@@ -29,10 +34,10 @@ vec3 sh_floats(uint at) {
     return uintBitsToFloat(uvec3(sh.at[at], sh.at[at + 1u], sh.at[at + 2u]));
 }
 
-// The constant term.
-vec3 sh_constant(uint base) {
-    return SH_FORMAT == SH_FLOAT ? sh_floats(base)
-        : vec3(sh_half(base, 0u), sh_half(base, 1u), sh_half(base, 2u));
+// The constant term, whose first word is given.
+vec3 sh_constant(uint base, uint first) {
+    return SH_FORMAT == SH_FLOAT ? uintBitsToFloat(uvec3(first, sh.at[base + 1u], sh.at[base + 2u]))
+        : vec3(unpackHalf2x16(first), sh_half(base, 2u));
 }
 
 // The unit of an integer in each channel, a column for each degree from 1 on; unused where numbers are floats.

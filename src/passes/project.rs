@@ -10,6 +10,7 @@ use crate::passes::stage::Stage;
 use crate::passes::storage::{buffers, memory};
 use crate::passes::{compact, cutoff};
 use crate::types::{self, Quad, Splat};
+use rara_base::limits;
 use rara_gpu::DeviceShape;
 use rara_scene::precision::ShFormat;
 
@@ -43,6 +44,9 @@ memory! {
     };
 }
 
+/// Splats of an invocation on processors.
+const TURNS: u32 = 8;
+
 /// True where the sort finds the splats' numbers beside their keys.
 fn finds_numbers(plan: &Plan) -> bool {
     plan.reordered && plan.way.shape == DeviceShape::Cpu
@@ -65,6 +69,10 @@ impl FromPlan for project::Constants {
             rects: plan.keeps_rects(),
             colours: plan.way.colours.code(),
             numbers: finds_numbers(plan),
+            local_size_x: match plan.way.shape {
+                DeviceShape::Cpu => limits::SPLAT_GROUP_SIZE / TURNS,
+                DeviceShape::Gpu { .. } => limits::SPLAT_GROUP_SIZE,
+            },
         }
     }
 }

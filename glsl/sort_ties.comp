@@ -124,6 +124,22 @@ void sort_by_digit(bool second, uint begin, uint end, uint digit_number) {
     publish();
 }
 
+// The first place from a given one on whose key equals the next one, or the given end. The search has a loop of its own: a
+// vector of invocations leaves it together, and then orders a tie of each at once.
+uint next_tie(uint i, uint end, uint count) {
+    end = min(end, count - 1u); // the last key has no next one
+    uint key = keys.at[i];
+    while (i < end) {
+        uint next = keys.at[i + 1u];
+        if (next == key) {
+            break;
+        }
+        key = next;
+        i++;
+    }
+    return i;
+}
+
 void main() {
     uint local = gl_LocalInvocationIndex;
     uint count = KEY_COUNT;
@@ -137,6 +153,10 @@ void main() {
     do {
         uvec2 tie = uvec2(0u);
         while (i < bounds.y && tie.y == 0u) {
+            i = next_tie(i, bounds.y, count);
+            if (i == bounds.y) {
+                break;
+            }
             uint key = keys.at[i];
             uint end = i + 1u;
             while (end < count && keys.at[end] == key) {

@@ -57,18 +57,21 @@ Seen taken_over(uint i) {
     splat.linear = vec3(Z_WHOLE, 0.0, 0.0);
     splat.curvature = vec3(0.0);
     if (CLIP_MODE >= MODE_RARA || RECLIPPED) {
-        splat.linear = OF(i, mine.linear);
-    }
-    if (CLIP_MODE == MODE_EXACT) {
-        splat.curvature = OF(i, mine.curvature);
+        splat.linear.x = OF(i, mine.linear.x);
     }
     splat.far = DEPTH_FORM != DEPTH_NONE ? OF(i, mine.far) : 0.0;
     return splat;
 }
 
-// The record of a splat, if it has one.
-Record record_taken_over(uint i, Seen splat) {
+// What weighs a splat that is cut: what it carries itself, and its record if it has one.
+Record weight_taken_over(uint i, inout Seen splat) {
     Record record;
+    if (CLIP_MODE >= MODE_RARA || RECLIPPED) {
+        splat.linear.yz = OF(i, mine.linear.yz);
+    }
+    if (CLIP_MODE == MODE_EXACT) {
+        splat.curvature = OF(i, mine.curvature);
+    }
     if (splat.linear.x < -Z_RANGE) {
         record.base = OF(i, mine_record.base);
         for (uint k = 0u; k <= CUT_HEADER; k++) {
@@ -114,7 +117,7 @@ Seen taken_over(uint i) {
     return splat;
 }
 
-Record record_taken_over(uint i, Seen splat) {
+Record weight_taken_over(uint, inout Seen splat) {
     return record_of(splat.linear);
 }
 

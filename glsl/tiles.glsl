@@ -225,7 +225,7 @@ void main() {
                     blend(splat, record, delta, false);
                 }
             } else {
-                record = record_taken_over(i, splat);
+                record = weight_taken_over(i, splat);
                 if (!done && !((RECLIPPED || CLIP_MODE >= MODE_RARA) && is_away(splat, delta))) {
                     blend(splat, record, delta, true);
                 }

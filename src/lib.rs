@@ -34,14 +34,14 @@ pub mod gpu {
 
 /// Files to Gaussians and back, and synthetic scenes.
 pub mod scene {
+    #[cfg(feature = "formats")]
+    pub use rara_scene::{
+        Annotations, Format, LoadReport, Remark, SaveOptions, SceneFile, load, load_from,
+        load_from_with, load_with, save, save_ply, save_with, saved_format,
+    };
     pub use rara_scene::{
         Attribute, Bounds, Comparison, GaussianArrays, Gaussians, Kind, Layer, LayerState, Part,
         Predicate, Property, Scene, cross_section, extent_along, generate, sh_coefficients,
-    };
-    #[cfg(feature = "formats")]
-    pub use rara_scene::{
-        Format, LoadReport, Outline, Remark, SaveOptions, SceneFile, load, load_from,
-        load_from_with, load_with, save, save_ply, save_with, saved_format,
     };
 }
 

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use glam::{DQuat, DVec3};
-use rara::scene::{self, Outline, Part, SaveOptions};
+use rara::scene::{self, Annotations, Part, SaveOptions};
 use rara::{Clip, LayerState, Placement};
 use serde::Serialize;
 
@@ -128,18 +128,18 @@ impl Convert {
             gaussians: mut whole,
             numbers,
         } = select::joined(taken);
-        let mut outline = std::mem::take(&mut loaded.outline);
-        outline.keep(&numbers);
+        let mut annotations = std::mem::take(&mut loaded.annotations);
+        annotations.keep(&numbers);
         let lost = whole.place(&placement);
         document.lost += lost.len();
-        outline.keep(&select::without(&lost, whole.len() + lost.len()));
+        annotations.keep(&select::without(&lost, whole.len() + lost.len()));
         if let Some(degree) = self.sh_degree.filter(|&degree| degree < whole.sh_degree()) {
             whole.set_sh_degree(degree);
         }
-        let lost_words = lost_words(format, &outline);
+        let lost_words = lost_words(format, &annotations);
         let options = SaveOptions::default()
             .spz_version(self.spz_version)
-            .outline(Some(outline));
+            .annotations(Some(annotations));
         document.clamped = scene::save_with(&self.output, &whole, &options)?;
         let notes = [
             trained::lost(format, whole.training()),
@@ -260,8 +260,8 @@ fn lost_origin(format: scene::Format, gaussians: &rara::Gaussians) -> Option<Str
 }
 
 /// The warning that a file of this format has no room for what others say around their Gaussians.
-fn lost_words(format: scene::Format, outline: &Outline) -> Option<String> {
-    (format != scene::Format::Gltf && !outline.is_silent()).then(|| {
+fn lost_words(format: scene::Format, annotations: &Annotations) -> Option<String> {
+    (format != scene::Format::Gltf && !annotations.is_silent()).then(|| {
         format!("{format} has no room for the names and extras of the glTF; a .glb keeps them")
     })
 }

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use rara::clip::Expression;
-use rara::scene::{Format, Outline, Property};
+use rara::scene::{Annotations, Format, Property};
 use rara::{Gaussians, Layer, LayerState};
 
 use super::failure::Failure;
@@ -78,7 +78,7 @@ pub(super) struct SceneLayers {
     /// The loader's reports, a line each.
     pub(super) notes: Vec<String>,
     /// What the files say around their Gaussians.
-    pub(super) outline: Outline,
+    pub(super) annotations: Annotations,
 }
 
 impl SceneLayers {

@@ -15,7 +15,7 @@ use super::scene_file::{self, LayerEntry};
 use super::scene_layers::SceneLayers;
 use super::trained::TrainedOptions;
 use super::{layer_clip, layer_place, place, select, trained, training, values};
-use rara::scene::{Format, Outline};
+use rara::scene::{Annotations, Format};
 
 fn files() -> String {
     format!(
@@ -231,8 +231,9 @@ fn load(
                 .map(|line| format!("{}: {line}", path.display())),
         );
         let count = loaded.gaussians.len() as u32;
-        let usual = || Outline::of(&loaded.gaussians);
-        all.outline.append(loaded.outline.unwrap_or_else(usual));
+        let usual = || Annotations::of(&loaded.gaussians);
+        all.annotations
+            .append(loaded.annotations.unwrap_or_else(usual));
         let stretch = entry.stretch.unwrap_or(DVec3::ONE);
         let first = all.layers.len();
         all.add((entry, settled), loaded.gaussians, &properties, before)?;

@@ -211,7 +211,7 @@ impl Assembler {
             report: self.report,
             format: Format::Ply,
             antialiased: None,
-            outline: None,
+            annotations: None,
         };
         (loaded, self.properties)
     }

@@ -6,6 +6,8 @@
 #![forbid(unsafe_code)]
 
 #[cfg(feature = "formats")]
+mod annotations;
+#[cfg(feature = "formats")]
 mod assemble;
 mod bounds;
 pub mod camera;
@@ -28,8 +30,6 @@ mod layer;
 #[cfg(feature = "formats")]
 mod load;
 mod numbers;
-#[cfg(feature = "formats")]
-mod outline;
 mod parts;
 pub mod picture;
 mod placed;
@@ -72,9 +72,9 @@ pub use property::Property;
 pub use training::{SortBy, Training};
 #[cfg(feature = "formats")]
 pub use {
+    annotations::Annotations,
     format::Format,
     load::{SceneFile, load, load_from, load_from_with, load_with},
-    outline::Outline,
     report::{LoadReport, Remark},
     save::{SaveOptions, save, save_ply, save_with, saved_format},
 };

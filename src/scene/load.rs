@@ -6,7 +6,7 @@ use std::path::Path;
 
 use glam::DVec3;
 
-use super::{Format, Gaussians, LoadReport, Outline, Property, Training, ply};
+use super::{Annotations, Format, Gaussians, LoadReport, Property, Training, ply};
 use rara_base::error::{Error, Result};
 
 /// What a format reads: a file of which nothing has been read yet.
@@ -41,7 +41,7 @@ pub struct SceneFile {
     /// says nothing.
     pub antialiased: Option<bool>,
     /// What a glTF file says around its Gaussians, such as names and `extras`; other formats say nothing.
-    pub outline: Option<Outline>,
+    pub annotations: Option<Annotations>,
 }
 
 impl SceneFile {

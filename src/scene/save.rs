@@ -7,7 +7,7 @@ use std::path::Path;
 use glam::DVec3;
 
 use super::formats::WRITERS;
-use super::{Format, Gaussians, Outline, Training};
+use super::{Annotations, Format, Gaussians, Training};
 use rara_base::error::{Error, Result};
 use rara_base::files::write_atomically;
 use rara_base::setters;
@@ -59,7 +59,7 @@ setters! {
         /// The version of a `.spz` file: 2, which the oldest readers know, 3, or 4, whose attributes are streams of zstd, each by itself.
         pub spz_version: u32,
         /// What a `.glb` says around its Gaussians; other formats have no room for it.
-        pub outline: Option<Outline>,
+        pub annotations: Option<Annotations>,
     }
 }
 
@@ -67,7 +67,7 @@ impl Default for SaveOptions {
     fn default() -> Self {
         Self {
             spz_version: 3,
-            outline: None,
+            annotations: None,
         }
     }
 }
@@ -75,7 +75,7 @@ impl Default for SaveOptions {
 /// Like [`save`], as the options say.
 ///
 /// # Errors
-/// Those of [`save`], and [`Error::Invalid`] for a version that is not written, and for an outline of other Gaussians.
+/// Those of [`save`], and [`Error::Invalid`] for a version that is not written, and for annotations of other Gaussians.
 pub fn save_with(path: &Path, gaussians: &Gaussians, options: &SaveOptions) -> Result<u64> {
     let format = saved_format(path)?;
     if let Some(writer) = WRITERS.iter().find(|writer| writer.format == format) {

@@ -20,7 +20,7 @@ pub(super) use self::write::WRITERS;
 use super::assemble::{Assembler, room};
 use super::failure::Failure;
 use super::load::{Input, Progress, load_from_with};
-use super::{Format, Gaussians, LoadReport, Outline, Property, SH_0, SceneFile};
+use super::{Annotations, Format, Gaussians, LoadReport, Property, SH_0, SceneFile};
 use crate::placement::Placement;
 use rara_base::counted::counted;
 use rara_base::error::{Error, Result};
@@ -34,7 +34,7 @@ struct FormatOutput {
     elements: u64,
     /// The numbers of those that were dropped or not asked for, which ascend.
     dropped: Vec<u64>,
-    outline: Option<Outline>,
+    annotations: Option<Annotations>,
 }
 
 impl From<Assembler> for FormatOutput {
@@ -46,7 +46,7 @@ impl From<Assembler> for FormatOutput {
             report: loaded.report,
             elements,
             dropped,
-            outline: None,
+            annotations: None,
         }
     }
 }
@@ -215,7 +215,7 @@ pub(super) fn read(
         gaussians: made.gaussians,
         report: made.report,
         format,
-        outline: made.outline,
+        annotations: made.annotations,
     };
     Ok((loaded, Vec::new()))
 }

@@ -5,7 +5,7 @@ use meshoptimizer_rs::codec::{
     ExpMode, VertexEncoding, encode_filter_exp, encode_filter_quat, encode_vertex_buffer,
 };
 use rara::glam::{DAffine3, DMat3, DQuat, DVec3, Quat, Vec3};
-use rara::scene::{LoadReport, Outline, SaveOptions, SceneFile, load, load_from, save_with};
+use rara::scene::{Annotations, LoadReport, SaveOptions, SceneFile, load, load_from, save_with};
 use rara::{Gaussians, SortBy, Training};
 use serde_json::{Value, json};
 
@@ -655,17 +655,17 @@ fn names_and_extras_are_written_again() {
         {"primitives": [primitive.clone(), primitive]},
     ]);
     let file = asset.file().unwrap();
-    let outline = file.outline.unwrap();
-    assert_eq!(outline.count(), 12);
-    let folder = Folder::new("formats-outline");
+    let annotations = file.annotations.unwrap();
+    assert_eq!(annotations.count(), 12);
+    let folder = Folder::new("formats-annotations");
     let path = folder.join("again.glb");
-    let written = |gaussians: &Gaussians, outline: &Outline| {
-        let options = SaveOptions::default().outline(Some(outline.clone()));
+    let written = |gaussians: &Gaussians, annotations: &Annotations| {
+        let options = SaveOptions::default().annotations(Some(annotations.clone()));
         save_with(&path, gaussians, &options)?;
         rara::Result::Ok((load(&path, &mut |_, _| ())?, json_of_glb(&path)))
     };
-    let (again, document) = written(&file.gaussians, &outline).unwrap();
-    assert_eq!(again.outline.as_ref(), Some(&outline));
+    let (again, document) = written(&file.gaussians, &annotations).unwrap();
+    assert_eq!(again.annotations.as_ref(), Some(&annotations));
     assert_eq!(again.gaussians.positions(), file.gaussians.positions());
     let asset_found = &document["asset"];
     assert_eq!(asset_found["copyright"], "A. Sculptor");
@@ -708,7 +708,7 @@ fn names_and_extras_are_written_again() {
         .into_parts(&part_of, 2)
         .unwrap()
         .swap_remove(0);
-    let mut fewer = outline.clone();
+    let mut fewer = annotations.clone();
     fewer.keep(&part.numbers);
     let (again, document) = written(&part.gaussians, &fewer).unwrap();
     assert_eq!(again.gaussians.positions(), part.gaussians.positions());
@@ -728,15 +728,17 @@ fn names_and_extras_are_written_again() {
         ),
         (json!(2), 2)
     );
-    let error = written(&part.gaussians, &outline).unwrap_err().to_string();
+    let error = written(&part.gaussians, &annotations)
+        .unwrap_err()
+        .to_string();
     assert!(
         error.contains("of 12 Gaussians, and there are 4"),
         "{error}"
     );
 
     // Two files become one.
-    let mut both = outline.clone();
-    both.append(outline.clone());
+    let mut both = annotations.clone();
+    both.append(annotations.clone());
     let mut twice = file.gaussians.clone();
     twice.append(&file.gaussians);
     let (_, document) = written(&twice, &both).unwrap();

@@ -1,9 +1,9 @@
 //! glTF 2.0 with `KHR_gaussian_splatting`: attributes of points, or a whole `.spz` in their place.
 
 mod accessor;
+mod annotations;
 mod buffers;
 mod nodes;
-mod outline;
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
@@ -13,9 +13,9 @@ use glam::{DQuat, DVec3};
 use serde_json::Value;
 
 use self::accessor::Accessor;
+use self::annotations::AnnotationsReader;
 use self::buffers::Buffers;
 use self::nodes::Transform;
-use self::outline::OutlineReader;
 use super::super::assemble::{ColumnForm, OPACITY, ROTATION, SCALES, SH};
 use super::super::{SH_0, SortBy, sh_coefficients};
 use super::bytes::Bytes;
@@ -87,7 +87,7 @@ pub(super) fn read_document(
     let mut meshes = BTreeMap::new();
     check_extensions(document)?;
     let (all, parents) = nodes::meshes(document, &mut buffers)?;
-    let mut outline = OutlineReader::new(document, parents);
+    let mut annotations = AnnotationsReader::new(document, parents);
     for drawn in all {
         let mesh = match meshes.entry(drawn.mesh) {
             Entry::Occupied(known) => known.into_mut(),
@@ -111,7 +111,7 @@ pub(super) fn read_document(
                 Transform::Similar(placement) => made.place(&placement),
                 Transform::Other(affine) => made.transform(&affine),
             }
-            outline.add(&drawn, primitive, made.gaussians.len());
+            annotations.add(&drawn, primitive, made.gaussians.len());
             whole.append(made)?;
             check_drawn(whole.gaussians.len() as u64, &buffers)?;
         }
@@ -122,7 +122,7 @@ pub(super) fn read_document(
              with it"
         )));
     }
-    whole.outline = Some(outline.finish());
+    whole.annotations = Some(annotations.finish());
     if hidden > 0 {
         whole.report.note(format!(
             "left out {} of the glTF that are scaled to nothing",

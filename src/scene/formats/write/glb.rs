@@ -5,23 +5,23 @@ use std::ops::Range;
 use glam::DVec3;
 use serde_json::{Value, json};
 
-use super::super::super::{Gaussians, Outline, SortBy, Training};
+use super::super::super::{Annotations, Gaussians, SortBy, Training};
 use super::super::gltf::{ANTIALIASED, EXTENSION, LINEAR, MARKS, STORED, turn};
 use super::corners;
-use crate::outline::Words;
+use crate::annotations::Words;
 use crate::placement::Placement;
 use rara_base::error::{Error, Result};
 
-pub(super) fn encode(gaussians: &Gaussians, outline: Option<&Outline>) -> Result<Vec<u8>> {
+pub(super) fn encode(gaussians: &Gaussians, annotations: Option<&Annotations>) -> Result<Vec<u8>> {
     let usual;
-    let outline = match outline {
-        Some(outline) => outline,
+    let annotations = match annotations {
+        Some(annotations) => annotations,
         None => {
-            usual = Outline::of(gaussians);
+            usual = Annotations::of(gaussians);
             &usual
         }
     };
-    outline.check(gaussians)?;
+    annotations.check(gaussians)?;
     let mut turned = gaussians.clone();
     turned.set_origin(DVec3::ZERO)?;
     // The reader turns the other way, which gives the same bits again.
@@ -31,7 +31,7 @@ pub(super) fn encode(gaussians: &Gaussians, outline: Option<&Outline>) -> Result
     let translation = turn().inverse() * gaussians.origin();
     let (mut nodes, mut meshes, mut roots) = (Vec::<Value>::new(), Vec::new(), Vec::new());
     let mut first = 0;
-    for (number, node) in outline.nodes.iter().enumerate() {
+    for (number, node) in annotations.nodes.iter().enumerate() {
         let mut primitives = Vec::new();
         for one in &node.primitives {
             let range = first..first + one.count;
@@ -66,11 +66,11 @@ pub(super) fn encode(gaussians: &Gaussians, outline: Option<&Outline>) -> Result
         }
         nodes.push(made.into());
     }
-    let mut asset = outline.asset.clone();
+    let mut asset = annotations.asset.clone();
     asset.insert("version".into(), json!("2.0"));
     let generator = concat!("rara ", env!("CARGO_PKG_VERSION"));
     asset.insert("generator".into(), json!(generator));
-    let mut scene = outline.scene.clone();
+    let mut scene = annotations.scene.clone();
     scene.insert("nodes".into(), json!(roots));
     let document = json!({
         "asset": asset,

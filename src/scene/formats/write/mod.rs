@@ -42,7 +42,7 @@ pub(in super::super) const WRITERS: [Writer; 4] = [
     Writer {
         format: Format::Gltf,
         ending: ".glb",
-        encode: |gaussians, options| glb::encode(gaussians, options.outline.as_ref()),
+        encode: |gaussians, options| glb::encode(gaussians, options.annotations.as_ref()),
         ranges: Ranges::ALL,
     },
 ];

@@ -6,19 +6,19 @@ use serde_json::Value;
 
 use super::nodes::Drawn;
 use super::{MARKS, list};
-use crate::outline::{Outline, OutlineNode, Words};
+use crate::annotations::{AnnotatedNode, Annotations, Words};
 
-/// The outline of the Gaussians that have been read.
-pub(super) struct OutlineReader<'a> {
+/// The annotations of the Gaussians that have been read.
+pub(super) struct AnnotationsReader<'a> {
     document: &'a Value,
     /// The parent of each node.
     parents: Vec<Option<usize>>,
-    /// The places of nodes in the outline; of meshes, where the document has no scene.
+    /// The places of nodes in the annotations; of meshes, where the document has no scene.
     places: BTreeMap<usize, usize>,
-    outline: Outline,
+    annotations: Annotations,
 }
 
-impl<'a> OutlineReader<'a> {
+impl<'a> AnnotationsReader<'a> {
     pub(super) fn new(document: &'a Value, parents: Vec<Option<usize>>) -> Self {
         let scene = super::index(document, "scene").unwrap_or(0);
         let scene = list(document, "scenes").get(scene as usize);
@@ -26,7 +26,7 @@ impl<'a> OutlineReader<'a> {
             document,
             parents,
             places: BTreeMap::new(),
-            outline: Outline {
+            annotations: Annotations {
                 asset: words(document.get("asset"), &["copyright", "extras"]),
                 scene: words(scene, NAMED),
                 nodes: Vec::new(),
@@ -43,16 +43,16 @@ impl<'a> OutlineReader<'a> {
         if own.is_some_and(|own| own.remove(MARKS).is_some() && own.is_empty()) {
             extras = None;
         }
-        let node = &mut self.outline.nodes[place];
+        let node = &mut self.annotations.nodes[place];
         node.mesh = words(list(self.document, "meshes").get(drawn.mesh), NAMED);
         node.add(extras, count);
     }
 
-    pub(super) fn finish(self) -> Outline {
-        self.outline
+    pub(super) fn finish(self) -> Annotations {
+        self.annotations
     }
 
-    /// The place of a node in the outline, after those that lead to it.
+    /// The place of a node in the annotations, after those that lead to it.
     fn place(&mut self, node: usize, is_node: bool) -> usize {
         let mut path = Vec::new();
         let mut at = Some(node);
@@ -66,12 +66,12 @@ impl<'a> OutlineReader<'a> {
             at = self.parents.get(node).copied().flatten();
         }
         for node in path.into_iter().rev() {
-            let place = self.outline.nodes.len();
+            let place = self.annotations.nodes.len();
             let named = list(self.document, "nodes").get(node).filter(|_| is_node);
-            self.outline.nodes.push(OutlineNode {
+            self.annotations.nodes.push(AnnotatedNode {
                 parent,
                 words: words(named, NAMED),
-                ..OutlineNode::default()
+                ..AnnotatedNode::default()
             });
             self.places.insert(node, place);
             parent = Some(place);

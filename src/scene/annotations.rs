@@ -10,40 +10,40 @@ use rara_base::error::{Error, Result};
 pub(super) type Words = Map<String, Value>;
 
 /// What a glTF file has around its Gaussians and no picture shows: names, `extras`, its copyright, and the nodes that lead to
-/// Gaussians. [`SceneFile::outline`](super::SceneFile::outline) has that of a file, and
-/// [`SaveOptions::outline`](super::SaveOptions::outline) writes it to another one.
+/// Gaussians. [`SceneFile::annotations`](super::SceneFile::annotations) has that of a file, and
+/// [`SaveOptions::annotations`](super::SaveOptions::annotations) writes it to another one.
 ///
-/// It counts the Gaussians of each primitive, so that whoever drops some, or joins files, does the same to it by
+/// They count the Gaussians of each primitive, so that whoever drops some, or joins files, does the same to them by
 /// [`keep`](Self::keep) and [`append`](Self::append).
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Outline {
+pub struct Annotations {
     /// Members of the document's `asset`, and of its scene.
     pub(super) asset: Words,
     pub(super) scene: Words,
     /// Parents come before their children, and what the Gaussians are of in their order.
-    pub(super) nodes: Vec<OutlineNode>,
+    pub(super) nodes: Vec<AnnotatedNode>,
 }
 
 /// A node, with the mesh of its Gaussians.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub(super) struct OutlineNode {
+pub(super) struct AnnotatedNode {
     pub(super) parent: Option<usize>,
     pub(super) words: Words,
     pub(super) mesh: Words,
-    pub(super) primitives: Vec<OutlinePrimitive>,
+    pub(super) primitives: Vec<AnnotatedPrimitive>,
 }
 
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub(super) struct OutlinePrimitive {
+pub(super) struct AnnotatedPrimitive {
     pub(super) extras: Option<Value>,
     /// The number of its Gaussians.
     pub(super) count: usize,
 }
 
-impl Outline {
-    /// The outline of Gaussians about which nothing is said.
+impl Annotations {
+    /// The annotations of Gaussians about which nothing is said.
     pub fn of(gaussians: &Gaussians) -> Self {
-        let mut node = OutlineNode::default();
+        let mut node = AnnotatedNode::default();
         node.add(None, gaussians.len());
         Self {
             nodes: vec![node],
@@ -51,9 +51,9 @@ impl Outline {
         }
     }
 
-    /// True where it has neither a name nor `extras` nor a copyright.
+    /// True where there is neither a name nor `extras` nor a copyright.
     pub fn is_silent(&self) -> bool {
-        let is_silent = |node: &OutlineNode| {
+        let is_silent = |node: &AnnotatedNode| {
             let all = &node.primitives;
             node.words.is_empty()
                 && node.mesh.is_empty()
@@ -62,7 +62,7 @@ impl Outline {
         self.asset.is_empty() && self.scene.is_empty() && self.nodes.iter().all(is_silent)
     }
 
-    /// The number of Gaussians that it is of.
+    /// The number of Gaussians that they are of.
     pub fn count(&self) -> usize {
         let all = self.nodes.iter().flat_map(|node| &node.primitives);
         all.map(|one| one.count).sum()
@@ -79,38 +79,38 @@ impl Outline {
         }
     }
 
-    /// Appends the outline of Gaussians that are [appended](Gaussians::append). What both say of the asset and the scene
+    /// Appends the annotations of Gaussians that are [appended](Gaussians::append). What both say of the asset and the scene
     /// is joined.
     pub fn append(&mut self, other: Self) {
         join(&mut self.asset, other.asset);
         join(&mut self.scene, other.scene);
         let before = self.nodes.len();
         self.nodes
-            .extend(other.nodes.into_iter().map(|node| OutlineNode {
+            .extend(other.nodes.into_iter().map(|node| AnnotatedNode {
                 parent: node.parent.map(|parent| before + parent),
                 ..node
             }));
     }
 
-    /// Refuses Gaussians that it is not of.
+    /// Refuses Gaussians that they are not of.
     pub(super) fn check(&self, gaussians: &Gaussians) -> Result<()> {
         let (own, count) = (self.count(), gaussians.len());
         match own == count {
             true => Ok(()),
             false => Err(Error::Invalid(format!(
-                "the outline is of {}, and there are {count} to write; drop the same ones from both",
+                "the annotations are of {}, and there are {count} to write; drop the same ones from both",
                 counted(own, "Gaussian")
             ))),
         }
     }
 }
 
-impl OutlineNode {
+impl AnnotatedNode {
     /// Adds Gaussians to its mesh: to its last primitive, where that has the same `extras`.
     pub(super) fn add(&mut self, extras: Option<Value>, count: usize) {
         match self.primitives.last_mut() {
             Some(last) if last.extras == extras => last.count += count,
-            _ => self.primitives.push(OutlinePrimitive { extras, count }),
+            _ => self.primitives.push(AnnotatedPrimitive { extras, count }),
         }
     }
 }

@@ -63,7 +63,7 @@ Seen taken_over(uint i) {
     return splat;
 }
 
-// What weighs a splat that is cut: what it carries itself, and its record if it has one.
+// Takes over the weight of a splat that is cut: the polynomial that it carries, and its record if it has one.
 Record weight_taken_over(uint i, inout Seen splat) {
     Record record;
     if (CLIP_MODE >= MODE_RARA || RECLIPPED) {

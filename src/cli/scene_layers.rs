@@ -77,7 +77,7 @@ pub(super) struct SceneLayers {
     pub(super) dropped: u64,
     /// The loader's reports, a line each.
     pub(super) notes: Vec<String>,
-    /// What the files say around their Gaussians.
+    /// Names and the like, which the files have around their Gaussians.
     pub(super) annotations: Annotations,
 }
 

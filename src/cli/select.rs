@@ -119,7 +119,7 @@ pub(super) fn without(numbers: &[u32], count: usize) -> Vec<u32> {
         .collect()
 }
 
-/// What has become of layers as one set, with the number of each Gaussian in all files. Where selections have divided files, it
+/// Joins what has become of layers to one set, with the number of each Gaussian in all files. Where selections have divided files, it
 /// is in the files' order, as if they had not: Gaussians that are equally deep are drawn in that order.
 pub(super) fn joined(layers: Vec<LayerRemains>) -> Part {
     let mut joined = Gaussians::default();

@@ -1,4 +1,4 @@
-//! What a glTF file says around its Gaussians.
+//! Names, `extras` and nodes of a glTF file, around its Gaussians.
 
 use serde_json::{Map, Value};
 
@@ -9,7 +9,7 @@ use rara_base::error::{Error, Result};
 /// Members of an object of glTF, such as its `name` and its `extras`.
 pub(super) type Words = Map<String, Value>;
 
-/// What a glTF file has around its Gaussians and no picture shows: names, `extras`, its copyright, and the nodes that lead to
+/// The part of a glTF file around its Gaussians that no picture shows: names, `extras`, its copyright, and the nodes that lead to
 /// Gaussians. [`SceneFile::annotations`](super::SceneFile::annotations) has that of a file, and
 /// [`SaveOptions::annotations`](super::SaveOptions::annotations) writes it to another one.
 ///

@@ -2,6 +2,7 @@
 
 use crate::common;
 use glam::DVec3;
+use rara::gpu::DeviceShape;
 use rara::{Camera, Clip, ClipOp, Gaussians, Headless, Miss, Mode, Picture, Plane, Settings};
 use rara_lab::measure::differences;
 
@@ -56,6 +57,9 @@ fn tracing_every_gaussian_degrades_the_picture_as_the_paper_reports() {
     let mut headless = common::headless();
     for (name, scene) in common::generated_scenes(3_000).into_iter().take(2) {
         let (camera, plain) = whole(&mut headless, &scene);
+        // A GPU's compiler may fuse other products and sums in another pipeline.
+        let is_cpus = headless.device().shape() == DeviceShape::Cpu;
+        let fused = if is_cpus { 0.0 } else { 1e-6 };
         let mut error = |miss, sigma| {
             let settings = Settings::default()
                 .mode(Mode::Rara)
@@ -69,9 +73,8 @@ fn tracing_every_gaussian_degrades_the_picture_as_the_paper_reports() {
                 .expect("the same size")
                 .l1
         };
-        // Another pipeline's compiler may fuse other products and sums.
         assert!(
-            error(Miss::Keep, 1.0) < 1e-6,
+            error(Miss::Keep, 1.0) <= fused,
             "{name}: a miss that keeps everything changes nothing"
         );
         assert!(

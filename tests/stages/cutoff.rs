@@ -36,7 +36,10 @@ struct Apart {
 #[test]
 fn records_are_the_twins() {
     let mut worst = Apart::default();
+    let mut rounding = 32.0;
     frame::for_each_scene(|stages, scene| {
+        // A division on a GPU may be 2.5 units in the last place off, where a CPU's is half a unit.
+        rounding = if stages.is_cpus() { 32.0 } else { 48.0 };
         for camera in frame::views(scene) {
             for (mode, form, planes, op) in [
                 (Mode::Exact, ExactForm::Affine, 1, ClipOp::And),
@@ -62,8 +65,7 @@ fn records_are_the_twins() {
     println!("{worst:?}");
     // A ten-thousandth of a deviation is a hundredth of a level of 8 bits.
     assert!(worst.z <= 1e-4, "{worst:?}");
-    // A division on a GPU may be 2.5 units in the last place off, where a CPU's is half a unit.
-    assert!(worst.gradients <= 48.0 * f32::EPSILON, "{worst:?}");
+    assert!(worst.gradients <= rounding * f32::EPSILON, "{worst:?}");
     assert!(worst.planes <= 32.0 * f32::EPSILON, "{worst:?}");
     // Twice the fit's tolerance: pixels lie between its samples.
     assert!(worst.curves <= 3e-4, "{worst:?}");

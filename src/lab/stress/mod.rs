@@ -27,7 +27,7 @@ pub use shapes::regimes as shapes;
 
 /// Largest error of alpha times weight in a pixel that a regime may show, unless it states its own limit.
 pub const TARGET: f64 = 2e-4;
-/// By how much more it may be on GPUs, whose quotients and roots Vulkan lets be several times as coarse as those of CPUs.
+/// The factor of it on GPUs, whose quotients and roots Vulkan lets be several times as coarse as those of CPUs.
 const COARSE: f64 = 2.0;
 
 /// A scene, a view of it and a cut.

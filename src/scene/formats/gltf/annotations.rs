@@ -1,4 +1,4 @@
-//! What a document says around the Gaussians that are read of it.
+//! Reading what a document says around its Gaussians.
 
 use std::collections::BTreeMap;
 
@@ -80,7 +80,7 @@ impl<'a> AnnotationsReader<'a> {
     }
 }
 
-/// What most objects of glTF may have.
+/// The members that most objects of glTF may have.
 const NAMED: &[&str] = &["name", "extras"];
 
 /// Those of an object's members that have these names.

@@ -72,20 +72,24 @@ bool is_carried_away(vec3 linear, vec3 curvature, vec2 delta) {
 // The weights of a record that is a curve, a polynomial of degree four in the splat's own coordinates: u is the column's,
 // v the first row's, and v changes by v_step a row.
 bool curve_weights(Record record, float u, float v, float v_step, float alpha[ROWS], out float weight[ROWS]) {
-    vec4 linear = RECORD_AT(record, 0);
-    vec4 bend = RECORD_AT(record, 1);
-    vec4 twist = RECORD_AT(record, 2);
-    vec4 wave = RECORD_AT(record, CUT_HEADER);
-    float at = linear.x + u * (linear.y + u * (bend.x + u * (twist.x + u * wave.x)));
-    float slope = linear.z + u * (bend.y + u * (twist.y + u * wave.y));
-    float second = bend.z + u * (twist.z + u * wave.z);
-    float third = twist.w + u * wave.w;
+    Section along = section(curve_of(RECORD_AT(record, 0), RECORD_AT(record, 1), RECORD_AT(record, 2), RECORD_AT(record, 3)), u);
     float z[ROWS];
     for (uint row = 0u; row < ROWS; row++) {
-        float w = v + float(row) * v_step;
-        z[row] = at + w * (slope + w * (second + w * (third + w * bend.w)));
+        z[row] = section_z(along, v + float(row) * v_step);
     }
     return shares(z, alpha, weight);
+}
+
+// The same of a record of a surface's terms.
+void terms_weights(Record record, float u, float v, float v_step, out float weight[ROWS]) {
+    TermCurves t = record_terms(record);
+    Section value = section(t.value, u);
+    Section variance = section(t.variance, u);
+    Section bend = section(t.bend, u);
+    for (uint row = 0u; row < ROWS; row++) {
+        float w = v + float(row) * v_step;
+        weight[row] = terms_share(Terms(section_z(value, w), section_z(variance, w), section_z(bend, w)));
+    }
 }
 
 // The values that all planes of a splat share in a column: the line of sight in its middle, by how much b2 and c change
@@ -317,6 +321,8 @@ bool cut_weights(Record record, vec2 delta, vec2 uv, float v_step, vec2 pixel_ce
     uint flags = record_flags(record);
     if (COMBINED && (flags & CUT_COMBINED) != 0u) {
         combined_weights(record, flags, delta, pixel_centre, alpha, weight);
+    } else if (COMBINED && CLIP_MODE == MODE_EXACT && (flags & CUT_TERMS) != 0u) {
+        terms_weights(record, uv.x, uv.y, v_step, weight);
     } else if (CLIP_MODE == MODE_EXACT && (flags & CUT_CURVE) != 0u) {
         return curve_weights(record, uv.x, uv.y, v_step, alpha, weight);
     } else if (CLIP_MODE == MODE_EXACT && (flags & CUT_FRONT) != 0u) {

@@ -1,24 +1,15 @@
 // The usual cut splat's weight without lines of sight: z is a polynomial in the splat's own coordinates, fitted to the
 // perspective-exact form and kept only where it is as good. The rasteriser carries one of degree two; a record holds one of
-// degree four.
+// degree four, or three polynomials from which z follows: where a surface that bends is steep, no single one is near it.
 #ifndef RARA_CURVE
 #define RARA_CURVE
+#include "polynomial.glsl"
 #include "quad.glsl"
 #include "region/crossing.glsl"
+#include "region/term_curves.glsl"
 
-// A point d of a splat has the coordinates u = k0 dx and v = k1 dx + k2 dy, with the conic's k0 k1 k2. Alpha is
-// opacity exp(-(u^2 + v^2) / 2), so that no pixel that counts is far from 0, and no power of a coordinate is large.
-// z = at + slope . (u, v) + bend . (u^2, u v, v^2) + twist . (u^3, u^2 v, u v^2, v^3)
-//     + wave . (u^4, u^3 v, u^2 v^2, u v^3) + ripple v^4.
-struct Curve {
-    float at;
-    vec2 slope;
-    vec3 bend;
-    vec4 twist;
-    vec4 wave;
-    float ripple;
-};
-
+// Whether records may hold the terms of a surface.
+layout(constant_id = 0) const bool HAS_TERMS = false;
 // Largest error of alpha times weight that a fit may have: a twenty-fifth of a level of 8 bits.
 const float CURVE_TOLERANCE = 1.5e-4;
 
@@ -32,8 +23,15 @@ struct CurveSource {
     vec3 conic; // Cholesky factor, 1/px
 };
 
-// `is_one` is made false where no single z is the weight's: the surface is crossed twice, or bends too much.
-float exact_z(CurveSource source, vec2 uv, inout bool is_one) {
+// The exact form at a point.
+struct Exact {
+    float z;
+    bool is_one; // whether this z is the weight's: the surface is not crossed twice, and bends little
+    Terms terms;
+    bool has_terms; // whether the weight follows from them, and from the first crossing alone
+};
+
+Exact exact_form(CurveSource source, vec2 uv) {
     float dx = uv.x / source.conic.x;
     vec2 delta = vec2(dx, (uv.y - source.conic.y * dx) / source.conic.z);
     Sight sight = sight_through(source.h0, source.h1, source.h2, source.centre + delta, delta);
@@ -42,11 +40,12 @@ float exact_z(CurveSource source, vec2 uv, inout bool is_one) {
         Crossed crossing = crossed(line_through(sight), source.surface, moved);
         // Where the surface is not crossed, its z has to say so too.
         float z = crossing.smooth_z;
-        is_one = is_one && moved == 0.0 && abs(crossing.other) >= PHI_ONE && (abs(z) >= PHI_ONE || abs(crossing.z) < FAR_AWAY);
-        return z;
+        bool has_terms = moved == 0.0 && abs(crossing.other) >= PHI_ONE;
+        bool is_one = has_terms && (abs(z) >= PHI_ONE || abs(crossing.z) < FAR_AWAY);
+        return Exact(z, is_one, crossing.terms, has_terms);
     }
     bool far;
-    return beam_z(sight, determinant(sight), source.half_space, far);
+    return Exact(beam_z(sight, determinant(sight), source.half_space, far), true, Terms(0.0, 0.0, 0.0), false);
 }
 
 // There are eight samples on each of five rings around the centre, every other ring turned by half a step. The fit uses
@@ -72,6 +71,9 @@ struct CurveSamples {
     float centre;
     float at[CURVE_SAMPLES];
     bool is_one; // whether a single z is the weight's at each of them
+    Terms centre_terms;
+    Terms terms[CURVE_SAMPLES];
+    bool has_terms; // whether the weight follows from them at each
 };
 
 const uint FITTED_RINGS = 2u;
@@ -79,7 +81,13 @@ const uint FITTED_RINGS = 2u;
 void sample_rings(CurveSource source, uint first, uint end, float extent, inout CurveSamples z) {
     for (uint ring = first; ring < end; ring++) {
         for (uint step = 0u; step < CURVE_STEPS; step++) {
-            z.at[ring * CURVE_STEPS + step] = exact_z(source, curve_radius(ring, extent) * curve_direction(ring, step), z.is_one);
+            Exact exact = exact_form(source, curve_radius(ring, extent) * curve_direction(ring, step));
+            z.at[ring * CURVE_STEPS + step] = exact.z;
+            z.is_one = z.is_one && exact.is_one;
+            if (HAS_TERMS && COMBINED) {
+                z.terms[ring * CURVE_STEPS + step] = exact.terms;
+                z.has_terms = z.has_terms && exact.has_terms;
+            }
         }
     }
 }
@@ -91,8 +99,11 @@ uint first_rings(CurveSource source) {
 
 CurveSamples first_samples(CurveSource source, float extent) {
     CurveSamples z;
-    z.is_one = true;
-    z.centre = exact_z(source, vec2(0.0), z.is_one);
+    Exact centre = exact_form(source, vec2(0.0));
+    z.centre = centre.z;
+    z.is_one = centre.is_one;
+    z.centre_terms = centre.terms;
+    z.has_terms = centre.has_terms;
     sample_rings(source, 0u, first_rings(source), extent, z);
     return z;
 }
@@ -104,13 +115,13 @@ struct Harmonics {
     float fourth; // of cosine on rings that are not turned, of sine on those that are
 };
 
-Harmonics harmonics(CurveSamples z, uint ring) {
+Harmonics harmonics(float at[CURVE_SAMPLES], uint ring) {
     Harmonics h = Harmonics(0.0, vec2(0.0), vec2(0.0), vec2(0.0), 0.0);
     for (uint step = 0u; step < CURVE_STEPS; step++) {
         vec2 one = curve_direction(ring, step);
         vec2 two = vec2(one.x * one.x - one.y * one.y, 2.0 * one.x * one.y);
         vec2 three = vec2(two.x * one.x - two.y * one.y, two.x * one.y + two.y * one.x);
-        float here = z.at[ring * CURVE_STEPS + step] / float(CURVE_STEPS);
+        float here = at[ring * CURVE_STEPS + step] / float(CURVE_STEPS);
         h.mean += here;
         h.first += 2.0 * here * one;
         h.second += 2.0 * here * two;
@@ -120,15 +131,15 @@ Harmonics harmonics(CurveSamples z, uint ring) {
     return h;
 }
 
-// Makes both fits from the rings at 1 and 2 deviations. Each harmonic's lowest powers of the radius are fitted; the factors
-// balance what the next power leaves on the two rings, weighted by alpha there, 0.61 and 0.14. Where the degree allows a
-// harmonic two powers, they pass through both rings.
-void fitted(CurveSamples z, out Curve square, out Curve quartic) {
-    Harmonics one = harmonics(z, 0u);
-    Harmonics two = harmonics(z, 1u);
-    float mean = 0.53 * (one.mean - z.centre) + 0.1175 * (two.mean - z.centre); // r^2
+// Makes fits from a function's values at the centre and on the rings at 1 and 2 deviations. Each harmonic's lowest powers of the
+// radius are fitted; the factors balance what the next power leaves on the two rings, weighted by alpha there, 0.61 and 0.14.
+// Where the degree allows a harmonic two powers, they pass through both rings.
+void fitted(float centre, float at[CURVE_SAMPLES], out Curve square, out Curve cubic, out Curve quartic) {
+    Harmonics one = harmonics(at, 0u);
+    Harmonics two = harmonics(at, 1u);
+    float mean = 0.53 * (one.mean - centre) + 0.1175 * (two.mean - centre); // r^2
     vec2 second = 0.53 * one.second + 0.1175 * two.second; // r^2
-    square.at = z.centre;
+    square.at = centre;
     square.slope = 0.693 * one.first + 0.1535 * two.first; // r
     square.bend = vec3(mean + second.x, 2.0 * second.y, mean - second.x);
     square.twist = vec4(0.0);
@@ -136,26 +147,19 @@ void fitted(CurveSamples z, out Curve square, out Curve quartic) {
     square.ripple = 0.0;
     vec2 first = (two.first - 2.0 * one.first) / 6.0; // r^3
     vec2 third = 0.36 * one.third + 0.08 * two.third; // r^3
-    float mean_4 = ((two.mean - z.centre) - 4.0 * (one.mean - z.centre)) / 12.0; // r^4
+    cubic = square;
+    cubic.slope = one.first - first;
+    cubic.twist = vec4(first.x + third.x, first.y + 3.0 * third.y, first.x - 3.0 * third.x, first.y - third.y);
+    float mean_4 = ((two.mean - centre) - 4.0 * (one.mean - centre)) / 12.0; // r^4
     vec2 second_4 = (two.second - 4.0 * one.second) / 12.0; // r^4
     vec2 fourth = vec2(one.fourth, two.fourth / 16.0); // r^4
-    float mean_2 = one.mean - z.centre - mean_4;
+    float mean_2 = one.mean - centre - mean_4;
     vec2 second_2 = one.second - second_4;
-    quartic.at = z.centre;
-    quartic.slope = one.first - first;
+    quartic = cubic;
     quartic.bend = vec3(mean_2 + second_2.x, 2.0 * second_2.y, mean_2 - second_2.x);
-    quartic.twist = vec4(first.x + third.x, first.y + 3.0 * third.y, first.x - 3.0 * third.x, first.y - third.y);
     quartic.wave = vec4(mean_4 + second_4.x + fourth.x, 2.0 * second_4.y + 4.0 * fourth.y, 2.0 * mean_4 - 6.0 * fourth.x,
                         2.0 * second_4.y - 4.0 * fourth.y);
     quartic.ripple = mean_4 - second_4.x + fourth.x;
-}
-
-float curve_z(Curve c, vec2 d) {
-    float at = c.at + d.x * (c.slope.x + d.x * (c.bend.x + d.x * (c.twist.x + d.x * c.wave.x)));
-    float slope = c.slope.y + d.x * (c.bend.y + d.x * (c.twist.y + d.x * c.wave.y));
-    float second = c.bend.z + d.x * (c.twist.z + d.x * c.wave.z);
-    float third = c.twist.w + d.x * c.wave.w;
-    return at + d.y * (slope + d.y * (second + d.y * (third + d.y * c.ripple)));
 }
 
 vec2 curve_gradient(Curve c, vec2 d) {
@@ -219,6 +223,46 @@ bool is_good(Curve curve, CurveSamples z, float opacity, float extent) {
         }
     }
     return true;
+}
+
+// Polynomials of a surface's terms.
+TermCurves fitted_terms(CurveSamples samples) {
+    float value[CURVE_SAMPLES];
+    float variance[CURVE_SAMPLES];
+    float bend[CURVE_SAMPLES];
+    for (uint i = 0u; i < FITTED_RINGS * CURVE_STEPS; i++) {
+        value[i] = samples.terms[i].value;
+        variance[i] = samples.terms[i].variance;
+        bend[i] = samples.terms[i].bend;
+    }
+    TermCurves fit;
+    Curve square;
+    Curve cubic;
+    Curve quartic;
+    fitted(samples.centre_terms.value, value, square, cubic, fit.value);
+    fitted(samples.centre_terms.variance, variance, square, fit.variance, quartic);
+    fitted(samples.centre_terms.bend, bend, fit.bend, cubic, quartic);
+    return fit;
+}
+
+// The same of what follows from a surface's terms. Their errors are weighted by what each does to the weight where that is most, as
+// if the edge were at every sample.
+bool is_good(TermCurves fit, CurveSamples samples, float opacity, float extent) {
+    bool good = samples.has_terms;
+    for (uint ring = 0u; ring < CURVE_RINGS; ring++) {
+        float r = curve_radius(ring, extent);
+        float alpha = opacity * exp(-0.5 * r * r);
+        for (uint step = 0u; step < CURVE_STEPS; step++) {
+            vec2 d = r * curve_direction(ring, step);
+            Terms exact = samples.terms[ring * CURVE_STEPS + step];
+            float n = sqrt(exact.variance);
+            float value = abs(curve_z(fit.value, d) - exact.value) / n;
+            float variance = abs(curve_z(fit.variance, d) - exact.variance) / exact.variance;
+            float bend = abs(curve_z(fit.bend, d) - exact.bend) / (exact.variance * n);
+            good = good && alpha * (0.4 * value + 0.12 * variance + 0.3 * bend) <= CURVE_TOLERANCE;
+        }
+    }
+    return good;
 }
 
 // A curve of degree two as a function of the pixel, which is how the rasteriser carries it.

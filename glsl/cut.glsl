@@ -11,7 +11,10 @@
 // one plane, which the rasteriser carries: 3 holds z at the centre, dz/dx and dz/dy, 4 its curvature, the factors of dx^2,
 // dx dy and dy^2. With CUT_COMBINED each surface has ENTRY_VECTORS vec4s: normal and distance; the bend's xx, yy, zz and the
 // operators of SurfaceData; xy, xz, yz. With CUT_CURVE, in the coordinates of curve.glsl, 0 holds z at the centre and its slopes, 1 the factors
-// of u^2, u v, v^2 and v^4, 2 those of u^3, u^2 v, u v^2 and v^3, 3 those of u^4, u^3 v, u^2 v^2 and u v^3.
+// of u^2, u v, v^2 and v^4, 2 those of u^3, u^2 v, u v^2 and v^3, 3 those of u^4, u^3 v, u^2 v^2 and u v^3. With CUT_TERMS
+// these are of the value of a surface's terms (region/crossing.glsl) instead; 4 holds their variance at the centre and its slopes,
+// 5 its factors of u^2, u v and v^2, 6 those of u^3, u^2 v, u v^2 and v^3; 4 and 5 end with the bend at the centre and its slope
+// along u, and 7 holds that along v, and its factors of u^2, u v and v^2.
 #ifndef RARA_CUT
 #define RARA_CUT
 
@@ -22,6 +25,8 @@ const uint CUT_BEAM = 1u;
 const uint CUT_FRONT = 2u;
 // The record is one plane's z as a polynomial of degree four.
 const uint CUT_CURVE = 4u;
+// The record is what one surface's crossing follows from, as polynomials.
+const uint CUT_TERMS = 32u;
 // The splat is cut by a union: the record holds the planes' complements, and what it keeps is the rest of what these keep
 // together. A plane alone is a union only where it is weighed as several are: in mode `rara`, and with CUT_FRONT.
 const uint CUT_UNION = 8u;

@@ -49,13 +49,26 @@ void write_carried(uint base, vec3 linear, vec3 curvature) {
     cut_records.at[base + CUT_HEADER + 1u] = vec4(curvature, 0.0);
 }
 
+// Writes what the weight of one surface follows from.
+void write_terms(uint base, TermCurves t) {
+    cut_records.at[base] = vec4(t.value.at, t.value.slope, float(1u << CUT_COUNT_SHIFT | CUT_TERMS));
+    cut_records.at[base + 1u] = vec4(t.value.bend, t.value.ripple);
+    cut_records.at[base + 2u] = t.value.twist;
+    cut_records.at[base + 3u] = t.value.wave;
+    cut_records.at[base + 4u] = vec4(t.variance.at, t.variance.slope, t.bend.at);
+    cut_records.at[base + 5u] = vec4(t.variance.bend, t.bend.slope.x);
+    cut_records.at[base + 6u] = t.variance.twist;
+    cut_records.at[base + 7u] = vec4(t.bend.slope.y, t.bend.bend);
+}
+
 // Writes the weight of one surface as a polynomial, if one is as good as the exact form.
 bool write_curve(uint base, CurveSource source, float opacity) {
     float extent = opacity_extent(opacity);
     CurveSamples samples = first_samples(source, extent);
     Curve square;
+    Curve cubic;
     Curve quartic;
-    fitted(samples, square, quartic);
+    fitted(samples.centre, samples.at, square, cubic, quartic);
     bool is_settled = is_close(square, source, samples, opacity, extent);
     if (!is_settled) {
         sample_rings(source, first_rings(source), CURVE_RINGS, extent, samples);
@@ -73,6 +86,13 @@ bool write_curve(uint base, CurveSource source, float opacity) {
         cut_records.at[base + 2u] = quartic.twist;
         cut_records.at[base + CUT_HEADER] = quartic.wave;
         return true;
+    }
+    if (HAS_TERMS && COMBINED && source.bends) {
+        TermCurves fit = fitted_terms(samples);
+        if (is_good(fit, samples, opacity, extent)) {
+            write_terms(base, fit);
+            return true;
+        }
     }
     return false;
 }

@@ -12,6 +12,7 @@ const bool READS_ONCE = true;
 struct Record {
     uint base;
     vec4 begin[CUT_HEADER + 1u];
+    vec4 rest[TERMS_VECTORS - CUT_HEADER - 1u]; // the rest of a surface's terms
     RecordSides sides;
 };
 #define RECORD_AT(record, i) record.begin[i]
@@ -28,6 +29,11 @@ Record record_of(vec3 linear) {
         record.base = record_number(linear) * push.params.cut_stride;
         for (uint i = 0u; i <= CUT_HEADER; i++) {
             record.begin[i] = cut_records.at[record.base + i];
+        }
+        if (COMBINED && (to_uint(record.begin[0].w) & CUT_TERMS) != 0u) {
+            for (uint i = 0u; i < TERMS_VECTORS - CUT_HEADER - 1u; i++) {
+                record.rest[i] = cut_records.at[record.base + CUT_HEADER + 1u + i];
+            }
         }
     }
     return record;
@@ -52,6 +58,19 @@ Record record_of(vec3 linear) {
 }
 
 #endif
+
+// The polynomials of a record that holds a surface's terms.
+TermCurves record_terms(Record record) {
+    vec4 at[TERMS_VECTORS];
+    for (uint i = 0u; i < TERMS_VECTORS; i++) {
+#ifdef RARA_SUBGROUP
+        at[i] = i <= CUT_HEADER ? record.begin[i] : record.rest[i - CUT_HEADER - 1u];
+#else
+        at[i] = RECORD_AT(record, i);
+#endif
+    }
+    return terms_of(at);
+}
 
 uint record_flags(Record record) {
     return to_uint(RECORD_AT(record, 0).w);

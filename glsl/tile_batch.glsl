@@ -77,6 +77,11 @@ Record weight_taken_over(uint i, inout Seen splat) {
         for (uint k = 0u; k <= CUT_HEADER; k++) {
             record.begin[k] = OF(i, mine_record.begin[k]);
         }
+        if (COMBINED && (record_flags(record) & CUT_TERMS) != 0u) {
+            for (uint k = 0u; k < TERMS_VECTORS - CUT_HEADER - 1u; k++) {
+                record.rest[k] = OF(i, mine_record.rest[k]);
+            }
+        }
         record.sides = all_cutting();
         if (SEVERAL && COMBINED) {
             record.sides = RecordSides(OF(i, mine_record.sides.cutting), OF(i, mine_record.sides.visible));

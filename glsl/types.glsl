@@ -257,6 +257,8 @@ const uint PIXELS_FLOAT = 0u;
 const uint PIXELS_BYTE = 1u;
 // vec4s of a surface in a combined cutoff record.
 const uint ENTRY_VECTORS = 3u;
+// vec4s of a cutoff record that holds a surface's terms.
+const uint TERMS_VECTORS = 8u;
 const uint NOT_CUT = 0xffffffffu;
 const uint CUT_AWAY = 0xfffffffeu;
 

@@ -6,6 +6,7 @@
 #include "region/share.glsl"
 #include "tail.glsl"
 #include "region/combination.glsl"
+#include "region/term_curves.glsl"
 
 vec2 principal_point() {
     return push.params.principal_point;
@@ -94,6 +95,26 @@ float chord_weight(uint base, uint flags, vec2 delta, vec2 pixel_centre) {
     return combined(flags, share);
 }
 
+// The share that follows from a surface's terms.
+float terms_share(Terms terms) {
+    Crossings c = crossings(terms);
+    if (abs(c.other) < PHI_ONE) {
+        float near = phi(c.z);
+        return c.between ? max(near - phi(-c.other), 0.0) : min(near + phi(c.other), 1.0);
+    }
+    return abs(c.z) < PHI_ONE ? phi(c.z) : c.z > 0.0 ? 1.0 : 0.0;
+}
+
+// The same from a record that holds them.
+float terms_weight(uint base, vec2 uv) {
+    vec4 at[TERMS_VECTORS];
+    for (uint i = 0u; i < TERMS_VECTORS; i++) {
+        at[i] = cut_records.at[base + i];
+    }
+    TermCurves t = terms_of(at);
+    return terms_share(Terms(curve_z(t.value, uv), curve_z(t.variance, uv), curve_z(t.bend, uv)));
+}
+
 // The weight by the frame's mode and the record's form. `delta` is the pixel's centre relative to the splat's centre, `uv`
 // the same in the splat's own coordinates (curve.glsl).
 float cut_weight(uint cut, vec2 delta, vec2 uv, vec2 pixel_centre) {
@@ -108,16 +129,11 @@ float cut_weight(uint cut, vec2 delta, vec2 uv, vec2 pixel_centre) {
     if ((flags & CUT_FRONT) != 0u) {
         return front_weight(base, flags, delta, pixel_centre);
     }
+    if (COMBINED && (flags & CUT_TERMS) != 0u) {
+        return terms_weight(base, uv);
+    }
     if ((flags & CUT_CURVE) != 0u) {
-        vec4 linear = cut_records.at[base];
-        vec4 bend = cut_records.at[base + 1u];
-        vec4 twist = cut_records.at[base + 2u];
-        vec4 wave = cut_records.at[base + CUT_HEADER];
-        float at = linear.x + uv.x * (linear.y + uv.x * (bend.x + uv.x * (twist.x + uv.x * wave.x)));
-        float slope = linear.z + uv.x * (bend.y + uv.x * (twist.y + uv.x * wave.y));
-        float second = bend.z + uv.x * (twist.z + uv.x * wave.z);
-        float third = twist.w + uv.x * wave.w;
-        return phi(at + uv.y * (slope + uv.y * (second + uv.y * (third + uv.y * bend.w))));
+        return phi(curve_z(curve_of(cut_records.at[base], cut_records.at[base + 1u], cut_records.at[base + 2u], cut_records.at[base + 3u]), uv));
     }
     return exact_weight(base, flags, delta, pixel_centre);
 }

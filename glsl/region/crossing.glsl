@@ -78,12 +78,28 @@ float steepest(Line line, vec3 gradient, out vec3 along) {
     return n;
 }
 
+// What a surface's crossing follows from, given the pixel: its function's mean but for the bend in the direction in which it varies
+// most, its variance, and that bend times the variance. All are polynomials of the pixel where lines of sight are parallel.
+struct Terms {
+    float value;
+    float variance;
+    float bend;
+};
+
+// z of the first crossing, beyond which all or nothing is kept if there is none, and of the second.
+struct Crossings {
+    float z;
+    float other;
+    bool between; // what is kept lies between the two
+};
+
 // A surface's crossings: z of the first, and of the second where that is not FAR_AWAY. What is kept lies between them or
 // outside; the gradients point to it.
 struct Crossed {
     float z;
     float smooth_z; // the same as a smooth function of the pixel: beyond FAR_AWAY, and where there is no crossing
     float other;
+    Terms terms;
     vec3 gradient;
     vec3 other_gradient;
     bool between;
@@ -103,6 +119,7 @@ Crossed crossed(Line line, UnitSurface surface, out float moved) {
     float shift = trace_of(line, surface) - bend;
     moved = abs(shift) <= BENT * n ? 0.0 : 1.0;
     float value = value_at(surface, line.mean) + shift;
+    crossing.terms = Terms(value + bend, n * n, bend * n * n);
     float square = n * n - 4.0 * bend * value;
     float sum = n + sqrt(max(square, 0.0));
     crossing.z = value < 0.0 ? -FAR_AWAY : FAR_AWAY;
@@ -124,6 +141,18 @@ Crossed crossed(Line line, UnitSurface surface, out float moved) {
         crossing.between = bend < 0.0;
     }
     return crossing;
+}
+
+// The same from its terms.
+Crossings crossings(Terms terms) {
+    float variance = max(terms.variance, 1e-30);
+    float n = sqrt(variance);
+    float bend = terms.bend / variance;
+    float value = terms.value - bend;
+    float square = variance - 4.0 * bend * value;
+    float sum = n + sqrt(max(square, 0.0));
+    float other = square < 0.0 ? NO_CROSSING : -sum / (2.0 * bend);
+    return Crossings(square < 0.0 ? (value < 0.0 ? -FAR_AWAY : FAR_AWAY) : 2.0 * value / sum, other, bend < 0.0);
 }
 
 #endif

@@ -28,31 +28,42 @@ uint carried_side(vec3 linear, vec3 curvature, vec2 delta) {
     return side_between(z - reach, z + reach, TILE_MARGIN * PHI_ONE);
 }
 
-// A record that is a curve. `uv` are the tile's middle in the splat's own coordinates, and `uv_reach` is how far its pixels'
-// are from those.
-uint curve_side(Record record, vec2 uv, vec2 uv_reach) {
-    vec4 linear = RECORD_AT(record, 0);
-    vec4 bend = RECORD_AT(record, 1);
-    vec4 twist = RECORD_AT(record, 2);
-    vec4 wave = RECORD_AT(record, CUT_HEADER);
-    float u = uv.x;
-    float v = uv.y;
-    float z = linear.x + u * (linear.y + u * (bend.x + u * (twist.x + u * wave.x)))
-        + v * (linear.z + u * (bend.y + u * (twist.y + u * wave.y))
-        + v * (bend.z + u * (twist.z + u * wave.z) + v * (twist.w + u * wave.w + v * bend.w)));
+// The least and the greatest of a polynomial in a tile. `uv` are the tile's middle in the splat's own coordinates, and `uv_reach` is
+// how far its pixels' are from those.
+vec2 curve_range(Curve c, vec2 uv, vec2 uv_reach) {
+    float z = curve_z(c, uv);
     // The mean value theorem, with the largest slopes that the coordinates' magnitudes allow.
-    float U = abs(u) + uv_reach.x;
-    float V = abs(v) + uv_reach.y;
-    bend = abs(bend);
-    twist = abs(twist);
-    wave = abs(wave);
-    float along_u = abs(linear.y) + 2.0 * bend.x * U + bend.y * V + 3.0 * twist.x * U * U + 2.0 * twist.y * U * V
+    float U = abs(uv.x) + uv_reach.x;
+    float V = abs(uv.y) + uv_reach.y;
+    vec3 bend = abs(c.bend);
+    vec4 twist = abs(c.twist);
+    vec4 wave = abs(c.wave);
+    float along_u = abs(c.slope.x) + 2.0 * bend.x * U + bend.y * V + 3.0 * twist.x * U * U + 2.0 * twist.y * U * V
         + twist.z * V * V + 4.0 * wave.x * U * U * U + 3.0 * wave.y * U * U * V + 2.0 * wave.z * U * V * V + wave.w * V * V * V;
-    float along_v = abs(linear.z) + bend.y * U + 2.0 * bend.z * V + twist.y * U * U + 2.0 * twist.z * U * V
+    float along_v = abs(c.slope.y) + bend.y * U + 2.0 * bend.z * V + twist.y * U * U + 2.0 * twist.z * U * V
         + 3.0 * twist.w * V * V + wave.y * U * U * U + 2.0 * wave.z * U * U * V + 3.0 * wave.w * U * V * V
-        + 4.0 * bend.w * V * V * V;
+        + 4.0 * abs(c.ripple) * V * V * V;
     float reach = along_u * uv_reach.x + along_v * uv_reach.y;
-    return side_between(z - reach, z + reach, TILE_MARGIN * PHI_ONE);
+    return vec2(z - reach, z + reach);
+}
+
+// A record that is a curve.
+uint curve_side(Record record, vec2 uv, vec2 uv_reach) {
+    Curve curve = curve_of(RECORD_AT(record, 0), RECORD_AT(record, 1), RECORD_AT(record, 2), RECORD_AT(record, 3));
+    vec2 z = curve_range(curve, uv, uv_reach);
+    return side_between(z.x, z.y, TILE_MARGIN * PHI_ONE);
+}
+
+// A record of a surface's terms. Its function has the same sign as far along a line of sight as counts, if that of its value
+// outweighs its slope and its bend there.
+uint terms_side(Record record, vec2 uv, vec2 uv_reach) {
+    TermCurves t = record_terms(record);
+    vec2 value = curve_range(t.value, uv, uv_reach);
+    vec2 variance = curve_range(t.variance, uv, uv_reach);
+    vec2 bend = curve_range(t.bend, uv, uv_reach);
+    float certain = TILE_MARGIN * PHI_ONE;
+    float most_bend = max(-bend.x, bend.y) / max(variance.x, 1e-30);
+    return side_between(value.x, value.y, certain * sqrt(max(variance.y, 0.0)) + (certain * certain + 1.0) * most_bend);
 }
 
 // The lines of sight of a tile's pixels: the middle one, and how far the others' terms are from its own. The gradients b1
@@ -187,10 +198,11 @@ uint tile_side(vec3 linear, vec3 curvature, inout Record record, vec4 centre_con
         return carried_side(linear, curvature, delta);
     }
     uint flags = record_flags(record);
-    if (CLIP_MODE == MODE_EXACT && (flags & CUT_CURVE) != 0u) {
+    bool is_terms = COMBINED && (flags & CUT_TERMS) != 0u;
+    if (CLIP_MODE == MODE_EXACT && (is_terms || (flags & CUT_CURVE) != 0u)) {
         vec2 uv = vec2(centre_conic.z * delta.x, centre_conic.w * delta.x + conic_z * delta.y);
         vec2 reach = vec2(abs(centre_conic.z) * TILE_REACH.x, abs(centre_conic.w) * TILE_REACH.x + abs(conic_z) * TILE_REACH.y);
-        return curve_side(record, uv, reach);
+        return is_terms ? terms_side(record, uv, reach) : curve_side(record, uv, reach);
     }
     if (CLIP_MODE == MODE_RARA && MISS != MISS_PEAK) {
         return SIDE_CUTOFF; // lines of sight beside the ellipsoid are kept or dropped wherever they are

@@ -345,10 +345,10 @@ fn weight_data(
     // A record is a header of three, the surfaces, and the eye's own plane where the camera may be inside a splat.
     let most_surfaces = layers.most_surfaces();
     let vectors = layers.most_record_vectors();
-    let cut_stride = if cuts(region.mode) {
-        3 + vectors + 1
-    } else {
-        0
+    let cut_stride = match cuts(region.mode) {
+        true if layers.are_combined() => (3 + vectors + 1).max(types::TERMS_VECTORS),
+        true => 3 + vectors + 1,
+        false => 0,
     };
     // Shaders count the records' elements in 32 bits.
     if u64::from(scene.gaussians) * u64::from(cut_stride) > u64::from(u32::MAX) {

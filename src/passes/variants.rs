@@ -26,7 +26,7 @@ layered!(clip_blocks, combined: is_combined, shortlisted: Plan::is_shortlisted);
 layered!(clip, combined: is_combined, shortlisted: Plan::is_shortlisted, atomic_masks: suits_atomics);
 layered!(compact_scan);
 layered!(compact, cut: Plan::view_is_cut);
-layered!(cutoff, combined: is_combined, shortlisted: Plan::is_shortlisted);
+layered!(cutoff, has_terms: is_for_cpu, combined: is_combined, shortlisted: Plan::is_shortlisted);
 layered!(depth, combined: is_combined, shortlisted: Plan::is_shortlisted);
 layered!(reclip_blocks, combined: is_combined, shortlisted: Plan::is_shortlisted);
 layered!(reclip, combined: is_combined, shortlisted: Plan::is_shortlisted, atomic_masks: suits_atomics);
@@ -36,6 +36,10 @@ fn is_combined(plan: &Plan) -> bool {
     plan.layers.are_combined()
 }
 
+fn is_for_cpu(plan: &Plan) -> bool {
+    plan.way.shape == DeviceShape::Cpu
+}
+
 fn suits_atomics(plan: &Plan) -> bool {
-    plan.way.shape != DeviceShape::Cpu
+    !is_for_cpu(plan)
 }

@@ -8,7 +8,7 @@
 #include "region/crossing.glsl"
 #include "region/term_curves.glsl"
 
-// Whether records may hold the terms of a surface.
+// True where records may hold the terms of a surface.
 layout(constant_id = 0) const bool HAS_TERMS = false;
 // Largest error of alpha times weight that a fit may have: a twenty-fifth of a level of 8 bits.
 const float CURVE_TOLERANCE = 1.5e-4;

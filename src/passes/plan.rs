@@ -346,7 +346,9 @@ fn weight_data(
     let most_surfaces = layers.most_surfaces();
     let vectors = layers.most_record_vectors();
     let cut_stride = match cuts(region.mode) {
-        true if layers.are_combined() => (3 + vectors + 1).max(types::TERMS_VECTORS),
+        true if layers.are_combined() && scene.shape == DeviceShape::Cpu => {
+            (3 + vectors + 1).max(types::TERMS_VECTORS)
+        }
         true => 3 + vectors + 1,
         false => 0,
     };

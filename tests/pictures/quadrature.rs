@@ -90,14 +90,13 @@ impl Case {
         }
     }
 
-    /// How many surfaces pass through the splat, as far as it reaches, those of a capsule's parts included.
+    /// How many surfaces pass through the splat, as far as it reaches.
     fn cutting(&self) -> usize {
-        let parts: Expression = in_parts(&self.region).parse().expect("an expression");
         let view = ViewTransform::<f64>::new(&self.camera);
         let settings = Settings::default();
         let footprint = Footprint::new(&self.gaussians, 0, &view);
         let cut = footprint
-            .and_then(|seen| cutoff(&self.gaussians, 0, &seen, &view, &parts.clip(), &settings));
+            .and_then(|seen| cutoff(&self.gaussians, 0, &seen, &view, &self.clip, &settings));
         match cut {
             Some(SplatCut::Affine { planes, .. }) => planes.len(),
             Some(SplatCut::Beam(beam)) => beam.half_spaces.len(),
@@ -147,24 +146,6 @@ impl Case {
         let middle = DVec2::new((pixel % width) as f64 + 0.5, (pixel / width) as f64 + 0.5);
         PixelRays::parallel(&self.camera, &self.clip, middle, STEPS).share(&self.gaussians, 0)
     }
-}
-
-/// A region's text with a capsule's tube and balls in its place.
-fn in_parts(region: &str) -> String {
-    let Some((before, rest)) = region.split_once("capsule:") else {
-        return region.into();
-    };
-    let end = rest.find([' ', ')']).unwrap_or(rest.len());
-    let numbers: Vec<&str> = rest[..end].trim_end_matches(',').split(',').collect();
-    let [from, to, radius] = [&numbers[..3], &numbers[3..6], &numbers[6..]].map(|n| n.join(","));
-    let parts =
-        format!("any(sphere:{from},{radius}, sphere:{to},{radius}, cylinder:{from},{to},{radius})");
-    let parts = match before.strip_suffix('!') {
-        Some(before) => format!("{before}not({parts})"),
-        None => format!("{before}{parts}"),
-    };
-    let rest = &rest[rest[..end].trim_end_matches(',').len()..];
-    format!("{parts}{}", in_parts(rest))
 }
 
 /// The text of a random shape whose surface passes through a point of the splat. Its radius is 3 to 100 of the splat's

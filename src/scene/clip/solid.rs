@@ -306,31 +306,20 @@ fn cuboid(centre: DVec3, half: DVec3, rotation: DQuat) -> Result<Clip> {
     Ok(Clip::of(sides, ClipOp::And))
 }
 
-/// The inside of a cylinder, less what is beyond an end and outside the ball around it. Where neither end's plane cuts a splat
-/// the cylinder alone does: a union with the balls, whose surfaces touch the cylinder's, would cut it by these too.
 fn capsule(from: DVec3, to: DVec3, radius: f64) -> Result<Clip> {
-    let ends = facing(from, to)?.into_iter().zip([from, to]);
-    let ends = ends.map(|(plane, end)| {
-        let ball = all_of([Quadric::sphere(end, radius)?]);
-        Ok(Clip::joined([all_of([plane]), ball], ClipOp::Or))
-    });
-    let mut parts = vec![all_of([Quadric::cylinder(from, to, radius)?])];
-    parts.extend(ends.collect::<Result<Vec<_>>>()?);
-    Ok(Clip::joined(parts, ClipOp::And))
+    let ends = [Quadric::sphere(from, radius)?, Quadric::sphere(to, radius)?];
+    let side = between(Quadric::cylinder(from, to, radius)?, from, to)?;
+    Ok(Clip::joined([Clip::of(ends, ClipOp::Or), side], ClipOp::Or))
 }
 
-/// The planes across a line at two of its points, which keep what is between them.
-fn facing(from: DVec3, to: DVec3) -> Result<[Plane; 2]> {
+/// What a quadric keeps between the planes across a line at two of its points.
+fn between(quadric: Quadric, from: DVec3, to: DVec3) -> Result<Clip> {
     let along = to - from;
     let along = along / along.abs().max_element();
-    let through = |normal: DVec3, point| Plane::new(normal, -normal.dot(point));
-    Ok([through(along, from)?, through(-along, to)?])
-}
-
-/// What a quadric keeps between those planes.
-fn between(quadric: Quadric, from: DVec3, to: DVec3) -> Result<Clip> {
     let mut clip = all_of([quadric]);
-    let planes = facing(from, to)?;
-    clip.surfaces.extend(planes.map(Surface::from));
+    for (normal, point) in [(along, from), (-along, to)] {
+        clip.surfaces
+            .push(Plane::new(normal, -normal.dot(point))?.into());
+    }
     Ok(clip)
 }

@@ -81,6 +81,32 @@ fn a_huge_sphere_is_its_tangent_plane() {
 }
 
 #[test]
+fn beyond_its_end_a_capsule_is_a_ball() {
+    let all = scene::generate(scene::Kind::General, 3_000, 3);
+    let mut beyond = all.empty_like();
+    for splat in 0..all.len() {
+        let (position, scale) = (all.positions()[splat], all.scales()[splat]);
+        if position.x > 4.0 * scale.max_element() {
+            let (turn, opacity) = (all.rotations()[splat], all.opacities()[splat]);
+            beyond.push(position, scale, turn, opacity, all.sh_of(splat));
+        }
+    }
+    assert!(beyond.len() > 1_000);
+    let mut headless = common::headless();
+    headless.load(&beyond).expect("uploads");
+    let camera = common::views(&all, 1, common::scaled((253, 190))).remove(0);
+    let mut picture = |text: &str| {
+        let clip = text.parse::<Expression>().expect("a shape").clip();
+        let settings = Settings::default();
+        headless.render(&camera, &clip, &settings).expect("renders");
+        headless.picture().expect("reads back")
+    };
+    let capsule = picture("capsule:-0.9,0,0,0,0,0,0.3");
+    let difference = differences(&capsule, &picture("sphere:0,0,0,0.3")).expect("the same size");
+    assert!(difference.max < 0.01, "{difference:?}, in 1/255");
+}
+
+#[test]
 fn a_region_and_its_complement_rebuild_the_whole() {
     let gaussians = scene::generate(scene::Kind::General, 3_000, 3);
     let mut headless = common::headless();

@@ -39,9 +39,9 @@ Exact exact_form(CurveSource source, vec2 uv) {
         float moved;
         Crossed crossing = crossed(line_through(sight), source.surface, moved);
         // Where the surface is not crossed, its z has to say so too.
-        float z = crossing.smooth_z;
-        bool has_terms = moved == 0.0 && abs(crossing.other) >= PHI_ONE;
-        bool is_one = has_terms && (abs(z) >= PHI_ONE || abs(crossing.z) < FAR_AWAY);
+        float z = crossing.at.smooth_z;
+        bool has_terms = moved == 0.0 && abs(crossing.at.other) >= PHI_ONE;
+        bool is_one = has_terms && (abs(z) >= PHI_ONE || abs(crossing.at.z) < FAR_AWAY);
         return Exact(z, is_one, crossing.terms, has_terms);
     }
     bool far;

@@ -11,8 +11,7 @@ const bool READS_ONCE = true;
 // Where the record is, and its first vec4s, which suffice for one surface: an invocation loads them once for all.
 struct Record {
     uint base;
-    vec4 begin[CUT_HEADER + 1u];
-    vec4 rest[TERMS_VECTORS - CUT_HEADER - 1u]; // the rest of a surface's terms
+    vec4 begin[TERMS_VECTORS]; // beyond the first CUT_HEADER + 1 only those of a surface's terms
     RecordSides sides;
 };
 #define RECORD_AT(record, i) record.begin[i]
@@ -31,8 +30,8 @@ Record record_of(vec3 linear) {
             record.begin[i] = cut_records.at[record.base + i];
         }
         if (COMBINED && (to_uint(record.begin[0].w) & CUT_TERMS) != 0u) {
-            for (uint i = 0u; i < TERMS_VECTORS - CUT_HEADER - 1u; i++) {
-                record.rest[i] = cut_records.at[record.base + CUT_HEADER + 1u + i];
+            for (uint i = CUT_HEADER + 1u; i < TERMS_VECTORS; i++) {
+                record.begin[i] = cut_records.at[record.base + i];
             }
         }
     }
@@ -63,11 +62,7 @@ Record record_of(vec3 linear) {
 TermCurves record_terms(Record record) {
     vec4 at[TERMS_VECTORS];
     for (uint i = 0u; i < TERMS_VECTORS; i++) {
-#ifdef RARA_SUBGROUP
-        at[i] = i <= CUT_HEADER ? record.begin[i] : record.rest[i - CUT_HEADER - 1u];
-#else
         at[i] = RECORD_AT(record, i);
-#endif
     }
     return terms_of(at);
 }

@@ -78,8 +78,8 @@ Record weight_taken_over(uint i, inout Seen splat) {
             record.begin[k] = OF(i, mine_record.begin[k]);
         }
         if (COMBINED && (record_flags(record) & CUT_TERMS) != 0u) {
-            for (uint k = 0u; k < TERMS_VECTORS - CUT_HEADER - 1u; k++) {
-                record.rest[k] = OF(i, mine_record.rest[k]);
+            for (uint k = CUT_HEADER + 1u; k < TERMS_VECTORS; k++) {
+                record.begin[k] = OF(i, mine_record.begin[k]);
             }
         }
         record.sides = all_cutting();

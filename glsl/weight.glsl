@@ -99,8 +99,7 @@ float chord_weight(uint base, uint flags, vec2 delta, vec2 pixel_centre) {
 float terms_share(Terms terms) {
     Crossings c = crossings(terms);
     if (abs(c.other) < PHI_ONE) {
-        float near = phi(c.z);
-        return c.between ? max(near - phi(-c.other), 0.0) : min(near + phi(c.other), 1.0);
+        return share_of_two(c.z, c.other, c.between);
     }
     return abs(c.z) < PHI_ONE ? phi(c.z) : c.z > 0.0 ? 1.0 : 0.0;
 }

@@ -31,6 +31,12 @@ uint operators_of(uint base, uint entry) {
 const vec4 BEND_NODE = vec4(0.0, 1.1544054, 2.3667594, 3.7504397);
 const vec4 BEND_WEIGHT = vec4(0.45714286, 0.24012318, 0.030757124, 5.4826886e-4);
 
+// The share that two crossings leave.
+float share_of_two(float z, float other, bool between) {
+    float near = phi(z);
+    return between ? max(near - phi(-other), 0.0) : min(near + phi(other), 1.0);
+}
+
 // The chance that at + slope t + bend t^2 is positive for a normal t.
 float interval_share(float at, float slope, float bend) {
     float square = slope * slope - 4.0 * bend * at;
@@ -38,12 +44,9 @@ float interval_share(float at, float slope, float bend) {
     if (square < 0.0 || !(sum > 0.0)) {
         return at >= 0.0 ? 1.0 : 0.0;
     }
-    float near = phi(2.0 * at / sum);
+    float z = 2.0 * at / sum;
     float other = -sum / (2.0 * bend);
-    if (!(abs(other) < 8.0)) {
-        return near;
-    }
-    return bend < 0.0 ? max(near - phi(-other), 0.0) : min(near + phi(other), 1.0);
+    return abs(other) < 8.0 ? share_of_two(z, other, bend < 0.0) : phi(z);
 }
 
 // The share of a surface that bends across the direction in which it varies most.
@@ -88,12 +91,12 @@ Stretch stretch_of(Line line, UnitSurface surface) {
     float moved;
     Crossed crossing = crossed(line, surface, moved);
     bool far = keeps_far(dot(crossing.gradient, line.s.c), crossing.gradient);
-    float first = far ? -crossing.z : crossing.z;
-    if (crossing.other == NO_CROSSING) {
+    float first = far ? -crossing.at.z : crossing.at.z;
+    if (crossing.at.other == NO_CROSSING) {
         return far ? Stretch(first, NO_CROSSING, true) : Stretch(-NO_CROSSING, first, true);
     }
-    float second = far ? crossing.other : -crossing.other;
-    return Stretch(min(first, second), max(first, second), crossing.between);
+    float second = far ? crossing.at.other : -crossing.at.other;
+    return Stretch(min(first, second), max(first, second), crossing.at.between);
 }
 
 // What a stretch of the line counts.
@@ -195,11 +198,10 @@ float share_of_surface(Line line, UnitSurface surface, Crossed crossing, float m
     if (moved > 0.0) {
         return bent_share(line, surface);
     }
-    if (crossing.other != NO_CROSSING) {
-        float near = phi(crossing.z);
-        return crossing.between ? max(near - phi(-crossing.other), 0.0) : min(near + phi(crossing.other), 1.0);
+    if (crossing.at.other != NO_CROSSING) {
+        return share_of_two(crossing.at.z, crossing.at.other, crossing.at.between);
     }
-    return abs(crossing.z) < PHI_ONE ? phi(crossing.z) : crossing.z > 0.0 ? 1.0 : 0.0;
+    return abs(crossing.at.z) < PHI_ONE ? phi(crossing.at.z) : crossing.at.z > 0.0 ? 1.0 : 0.0;
 }
 
 // The share by mode `exact`, by the sides of at most three open crossings. `open` is how many there are.
@@ -221,8 +223,8 @@ float share_of_sides(Line line, uint base, uint count, RecordSides sides, out ui
             return share_of_surface(line, surface, crossing, moved);
         }
         uint pattern = 0u;
-        for (uint side = 0u; side < (crossing.other == NO_CROSSING ? 1u : 2u); side++) {
-            float z = side == 0u ? crossing.z : crossing.other;
+        for (uint side = 0u; side < (crossing.at.other == NO_CROSSING ? 1u : 2u); side++) {
+            float z = side == 0u ? crossing.at.z : crossing.at.other;
             uint here = z > 0.0 ? 0xffu : 0u;
             if (abs(z) < PHI_ONE) {
                 vec3 a = side == 0u ? crossing.gradient : crossing.other_gradient;
@@ -237,7 +239,7 @@ float share_of_sides(Line line, uint base, uint count, RecordSides sides, out ui
                 here = SIDE_PATTERN[min(open, 2u)];
                 open++;
             }
-            pattern = side == 0u ? here : crossing.between ? pattern & here : pattern | here;
+            pattern = side == 0u ? here : crossing.at.between ? pattern & here : pattern | here;
         }
         stack = bytes_answered(stack, pattern, operators_of(base, i));
     }

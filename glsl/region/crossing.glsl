@@ -78,7 +78,7 @@ float steepest(Line line, vec3 gradient, out vec3 along) {
     return n;
 }
 
-// What a surface's crossing follows from, given the pixel: its function's mean but for the bend in the direction in which it varies
+// A surface's crossing follows from these, given the pixel: its function's mean but for the bend in the direction in which it varies
 // most, its variance, and that bend times the variance. All are polynomials of the pixel where lines of sight are parallel.
 struct Terms {
     float value;
@@ -86,28 +86,44 @@ struct Terms {
     float bend;
 };
 
-// z of the first crossing, beyond which all or nothing is kept if there is none, and of the second.
+// Where a function with this mean, deviation and bend is zero in the direction in which it varies most.
 struct Crossings {
-    float z;
-    float other;
+    float z; // of the first; FAR_AWAY and the mean's sign where there is none
+    float smooth_z; // the same as a smooth function of the pixel, also where there is no crossing
+    float other; // of the second
     bool between; // what is kept lies between the two
-};
-
-// A surface's crossings: z of the first, and of the second where that is not FAR_AWAY. What is kept lies between them or
-// outside; the gradients point to it.
-struct Crossed {
-    float z;
-    float smooth_z; // the same as a smooth function of the pixel: beyond FAR_AWAY, and where there is no crossing
-    float other;
-    Terms terms;
-    vec3 gradient;
-    vec3 other_gradient;
-    bool between;
+    bool exist;
 };
 
 const float NO_CROSSING = 1e30;
 // Beyond this nothing is left of a splat, and no chord is as long.
 const float FAR_AWAY = 40.0;
+
+Crossings crossings(float value, float n, float bend) {
+    float square = n * n - 4.0 * bend * value;
+    float sum = n + sqrt(max(square, 0.0));
+    Crossings c;
+    c.exist = !(square < 0.0) && sum > 0.0;
+    c.smooth_z = 2.0 * value / sum;
+    c.z = c.exist ? c.smooth_z : value < 0.0 ? -FAR_AWAY : FAR_AWAY;
+    c.other = c.exist ? -sum / (2.0 * bend) : NO_CROSSING;
+    c.between = bend < 0.0;
+    return c;
+}
+
+Crossings crossings(Terms terms) {
+    float variance = max(terms.variance, 1e-30);
+    float bend = terms.bend / variance;
+    return crossings(terms.value - bend, sqrt(variance), bend);
+}
+
+// A surface's crossings, no farther than FAR_AWAY: beyond, there is no second one. The gradients at them point to what is kept.
+struct Crossed {
+    Crossings at;
+    Terms terms;
+    vec3 gradient;
+    vec3 other_gradient;
+};
 
 // `moved` is by how many deviations the bend across the direction moves the mean.
 Crossed crossed(Line line, UnitSurface surface, out float moved) {
@@ -120,39 +136,13 @@ Crossed crossed(Line line, UnitSurface surface, out float moved) {
     moved = abs(shift) <= BENT * n ? 0.0 : 1.0;
     float value = value_at(surface, line.mean) + shift;
     crossing.terms = Terms(value + bend, n * n, bend * n * n);
-    float square = n * n - 4.0 * bend * value;
-    float sum = n + sqrt(max(square, 0.0));
-    crossing.z = value < 0.0 ? -FAR_AWAY : FAR_AWAY;
-    crossing.smooth_z = 2.0 * value / sum;
-    crossing.other = NO_CROSSING;
-    crossing.gradient = gradient;
-    crossing.other_gradient = gradient;
-    crossing.between = true;
-    if (square < 0.0 || !(sum > 0.0)) {
-        return crossing;
-    }
-    crossing.z = clamp(crossing.smooth_z, -FAR_AWAY, FAR_AWAY);
+    crossing.at = crossings(value, n, bend);
+    crossing.at.z = clamp(crossing.at.z, -FAR_AWAY, FAR_AWAY);
+    crossing.at.other = abs(crossing.at.other) < FAR_AWAY ? crossing.at.other : NO_CROSSING;
     vec3 across = 2.0 * bent(surface, along);
-    crossing.gradient = gradient - crossing.z * across;
-    float other = -sum / (2.0 * bend);
-    if (abs(other) < FAR_AWAY) {
-        crossing.other = other;
-        crossing.other_gradient = gradient + other * across;
-        crossing.between = bend < 0.0;
-    }
+    crossing.gradient = crossing.at.exist ? gradient - crossing.at.z * across : gradient;
+    crossing.other_gradient = crossing.at.other != NO_CROSSING ? gradient + crossing.at.other * across : gradient;
     return crossing;
-}
-
-// The same from its terms.
-Crossings crossings(Terms terms) {
-    float variance = max(terms.variance, 1e-30);
-    float n = sqrt(variance);
-    float bend = terms.bend / variance;
-    float value = terms.value - bend;
-    float square = variance - 4.0 * bend * value;
-    float sum = n + sqrt(max(square, 0.0));
-    float other = square < 0.0 ? NO_CROSSING : -sum / (2.0 * bend);
-    return Crossings(square < 0.0 ? (value < 0.0 ? -FAR_AWAY : FAR_AWAY) : 2.0 * value / sum, other, bend < 0.0);
 }
 
 #endif

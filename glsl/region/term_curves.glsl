@@ -1,4 +1,4 @@
-// What a surface's crossing follows from (crossing.glsl), as polynomials in a splat's own coordinates, and how they are stored.
+// A surface's terms (crossing.glsl) as polynomials in a splat's own coordinates, and how they are stored.
 #ifndef RARA_REGION_TERM_CURVES
 #define RARA_REGION_TERM_CURVES
 #include "cut.glsl"

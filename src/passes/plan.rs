@@ -344,13 +344,13 @@ fn weight_data(
     }
     // A record is a header of three, the surfaces, and the eye's own plane where the camera may be inside a splat.
     let most_surfaces = layers.most_surfaces();
-    let vectors = layers.most_record_vectors();
+    let surfaces = 3 + layers.most_record_vectors() + 1;
     let cut_stride = match cuts(region.mode) {
-        true if layers.are_combined() && scene.shape == DeviceShape::Cpu => {
-            (3 + vectors + 1).max(types::TERMS_VECTORS)
-        }
-        true => 3 + vectors + 1,
         false => 0,
+        true if layers.are_combined() && scene.shape == DeviceShape::Cpu => {
+            surfaces.max(types::TERMS_VECTORS)
+        }
+        true => surfaces,
     };
     // Shaders count the records' elements in 32 bits.
     if u64::from(scene.gaussians) * u64::from(cut_stride) > u64::from(u32::MAX) {

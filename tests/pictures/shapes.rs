@@ -3,7 +3,9 @@
 use crate::common;
 use glam::DVec3;
 use rara::clip::Expression;
-use rara::{Camera, Clip, Gaussians, Layer, Mode, Plane, Raster, Scene, Settings, scene};
+use rara::{
+    Camera, Clip, Gaussians, Headless, Layer, Mode, Picture, Plane, Raster, Scene, Settings, scene,
+};
 use rara_lab::measure::differences;
 
 /// Every shape, and regions of several, through the middle of a generated scene of radius 1.
@@ -59,18 +61,21 @@ fn quads_and_meshes_draw_shapes_like_tiles() {
     check(&modes, &[Raster::Quad, Raster::Mesh], &EXPRESSIONS[8..11]);
 }
 
+/// A picture of what an expression keeps.
+fn clipped(headless: &mut Headless, camera: &Camera, text: &str) -> Picture {
+    let clip = text.parse::<Expression>().expect("an expression").clip();
+    let settings = Settings::default();
+    headless.render(camera, &clip, &settings).expect("renders");
+    headless.picture().expect("reads back")
+}
+
 #[test]
 fn a_huge_sphere_is_its_tangent_plane() {
     let gaussians = scene::generate(scene::Kind::General, 3_000, 3);
     let mut headless = common::headless();
     headless.load(&gaussians).expect("uploads");
     let camera = common::views(&gaussians, 1, common::scaled((253, 190))).remove(0);
-    let mut picture = |text: &str| {
-        let clip = text.parse::<Expression>().expect("a shape").clip();
-        let settings = Settings::default();
-        headless.render(&camera, &clip, &settings).expect("renders");
-        headless.picture().expect("reads back")
-    };
+    let mut picture = |text: &str| clipped(&mut headless, &camera, text);
     let plane = picture("plane:0.6,0,0.8,0.1");
     let sphere = picture("sphere:599999.94,0,799999.92,1000000");
     let outside = picture("!sphere:-600000.06,0,-800000.08,1000000");
@@ -95,12 +100,7 @@ fn beyond_its_end_a_capsule_is_a_ball() {
     let mut headless = common::headless();
     headless.load(&beyond).expect("uploads");
     let camera = common::views(&all, 1, common::scaled((253, 190))).remove(0);
-    let mut picture = |text: &str| {
-        let clip = text.parse::<Expression>().expect("a shape").clip();
-        let settings = Settings::default();
-        headless.render(&camera, &clip, &settings).expect("renders");
-        headless.picture().expect("reads back")
-    };
+    let mut picture = |text: &str| clipped(&mut headless, &camera, text);
     let capsule = picture("capsule:-0.9,0,0,0,0,0,0.3");
     let difference = differences(&capsule, &picture("sphere:0,0,0,0.3")).expect("the same size");
     assert!(difference.max < 0.01, "{difference:?}, in 1/255");

@@ -110,11 +110,6 @@ void write_decided(uint base, bool is_kept) {
     cut_records.at[base + CUT_HEADER] = vec4(vec3(0.0), side);
 }
 
-UnitSurface first_entry(uint base) {
-    uint at = base + CUT_HEADER;
-    return UnitSurface(cut_records.at[at], cut_records.at[at + 1u].xyz, cut_records.at[at + 2u].xyz);
-}
-
 // True when a record's surfaces are planes that all combine alike, as a list of planes does.
 bool are_planes(uint base, uint entries, out bool is_union) {
     bool has_and = false;
@@ -214,7 +209,7 @@ void main() {
         return;
     }
     if (COMBINED && is_combined && !beam && count == 1u && FRAME.weight.form == FORM_AUTO) {
-        UnitSurface surface = first_entry(base);
+        UnitSurface surface = entry_at(base, 0u);
         CurveSource source = source_of_footprint(f);
         source.surface = surface;
         vec3 linear;
@@ -256,7 +251,7 @@ void main() {
         source.half_space = half_space;
         source.bends = is_combined;
         if (COMBINED && is_combined) {
-            source.surface = first_entry(base);
+            source.surface = entry_at(base, 0u);
         }
         source.centre = f.screen_centre - VIEW.focal.zw;
         source.conic = conic_of(f);

@@ -10,6 +10,9 @@
 #define PART_ENTRIES MAX_CUTTING
 #include "region/parts.glsl"
 
+// By how many deviations what a surface keeps may reach beyond what another keeps that it is said to be part of.
+const float IMPLIED = 3e-4;
+
 // About how far a surface that cuts a Gaussian is from its centre, in standard deviations.
 float nearness(UnitSurface s) {
     float slope = length(s.half_space.xyz) + sqrt(abs(s.half_space.w) * bend_norm(s));
@@ -36,6 +39,65 @@ float farthest_counted(Footprint f, vec3 position, float deviations, out uint ro
         }
         room -= ties;
         farthest = next;
+    }
+}
+
+UnitSurface entry_at(uint base, uint entry) {
+    uint at = base + CUT_HEADER + ENTRY_VECTORS * entry;
+    return UnitSurface(cut_records.at[at], cut_records.at[at + 1u].xyz, cut_records.at[at + 2u].xyz);
+}
+
+void write_entry(uint base, uint entry, UnitSurface s, uint operators) {
+    uint at = base + CUT_HEADER + ENTRY_VECTORS * entry;
+    cut_records.at[at] = s.half_space;
+    cut_records.at[at + 1u] = vec4(s.diagonal, float(operators));
+    cut_records.at[at + 2u] = vec4(s.across, 0.0);
+}
+
+// True when a surface keeps nothing of a Gaussian, as far as `deviations`, that another one does not keep. It follows if the
+// difference of their functions, with a little of the squared distance added, is nowhere negative: if a matrix is positive definite.
+bool implies(UnitSurface one, UnitSurface other, float deviations) {
+    float slack = IMPLIED * min(length(one.half_space.xyz), length(other.half_space.xyz));
+    vec4 plane = other.half_space - one.half_space;
+    vec3 d = other.diagonal - one.diagonal + 0.5 * slack / (deviations * deviations);
+    vec3 a = other.across - one.across;
+    vec3 n = 0.5 * plane.xyz;
+    mat4 rest = mat4(vec4(d.x, a.xy, n.x), vec4(a.x, d.y, a.z, n.y), vec4(a.yz, d.z, n.z), vec4(n, plane.w + 0.5 * slack));
+    for (uint i = 0u; i < 4u; i++) {
+        if (!(rest[i][i] > 0.0)) {
+            return false;
+        }
+        for (uint j = i + 1u; j < 4u; j++) {
+            rest[j] -= rest[i] * (rest[i][j] / rest[i][i]);
+        }
+    }
+    return true;
+}
+
+// Takes a surface off the list that changes nothing beside the one that it is joined with: as a capsule's ball within its tube.
+void leave_out_implied(uint base, float deviations, uint first_entry, inout uint entries) {
+    for (uint i = 1u; i < entries;) {
+        uint operators = entry_operators[first_entry + i];
+        uint count = operator_count(operators);
+        bool are_joined = operator_count(entry_operators[first_entry + i - 1u]) == 0u && count > 0u;
+        UnitSurface below = entry_at(base, i - 1u);
+        UnitSurface top = entry_at(base, i);
+        bool top_implies = are_joined && implies(top, below, deviations);
+        if (!top_implies && !(are_joined && implies(below, top, deviations))) {
+            i++;
+            continue;
+        }
+        uint ors = operators >> OPERATOR_SHIFT;
+        if (top_implies != is_or(operators, 0u)) {
+            write_entry(base, i - 1u, top, 0u);
+        }
+        entry_operators[first_entry + i - 1u] = count - 1u | (ors >> 1) << OPERATOR_SHIFT;
+        entries--;
+        for (uint j = i; j < entries; j++) {
+            write_entry(base, j, entry_at(base, j + 1u), 0u);
+            entry_operators[first_entry + j] = entry_operators[first_entry + j + 1u];
+        }
+        i = max(i - 1u, 1u);
     }
 }
 
@@ -73,20 +135,19 @@ uint write_reduced(uint base, Footprint f, vec3 position, float deviations, out 
             bool counts = !is_again || here < farthest || (here == farthest && room > 0u);
             room -= is_again && here == farthest && room > 0u ? 1u : 0u;
             if (counts && entries < MAX_CUTTING) {
-                float size = max(largest(s.half_space.xyz), max(largest(s.diagonal), largest(s.across)));
-                float inverse = size > 0.0 ? 1.0 / size : 1.0;
-                uint at = base + CUT_HEADER + ENTRY_VECTORS * entries;
-                cut_records.at[at] = s.half_space * inverse;
-                cut_records.at[at + 1u] = vec4(s.diagonal * inverse, 0.0);
-                cut_records.at[at + 2u] = vec4(s.across * inverse, 0.0);
+                write_entry(base, entries, s, 0u);
                 entry_operators[first_entry + entries] = 0u;
                 part = 2u + entries++;
             }
         }
         push_part(part, operators_at(i), first_part, first_entry, depth, entries);
     }
+    leave_out_implied(base, deviations, first_entry, entries);
     for (uint i = 0u; i < entries; i++) {
-        cut_records.at[base + CUT_HEADER + ENTRY_VECTORS * i + 1u].w = float(entry_operators[first_entry + i]);
+        UnitSurface s = entry_at(base, i);
+        float size = max(largest(s.half_space.xyz), max(largest(s.diagonal), largest(s.across)));
+        float inverse = size > 0.0 ? 1.0 / size : 1.0;
+        write_entry(base, i, UnitSurface(s.half_space * inverse, s.diagonal * inverse, s.across * inverse), entry_operators[first_entry + i]);
     }
     return min(parts[first_part], 2u);
 }

@@ -81,12 +81,78 @@ pub(crate) fn reduced<T: Real>(
     let answers = numbered.zip(steps).map(|((index, (side, surface)), step)| {
         let part = match side {
             Side::Cutoff if nearest.contains(&index) => {
-                RegionRest::Cut(vec![(surface.scaled(), Vec::new())])
+                RegionRest::Cut(vec![(surface, Vec::new())])
             }
             Side::Cutoff => RegionRest::Decided(surface.half_space.offset >= T::zero()),
             side => RegionRest::Decided(side == Side::Visible),
         };
         (part, step.operators)
     });
-    answer(answers, RegionRest::Decided(true), |op, a, b| a.join(op, b))
+    match answer(answers, RegionRest::Decided(true), |op, a, b| a.join(op, b)) {
+        RegionRest::Cut(mut surfaces) => {
+            leave_out_implied(&mut surfaces, deviations);
+            for (surface, _) in &mut surfaces {
+                *surface = surface.scaled();
+            }
+            RegionRest::Cut(surfaces)
+        }
+        decided @ RegionRest::Decided(_) => decided,
+    }
+}
+
+/// By how many deviations what a surface keeps may reach beyond what another keeps that it is said to be part of.
+const IMPLIED: f64 = 3e-4;
+
+/// True when a surface keeps nothing of a Gaussian, as far as `deviations`, that another one does not keep. It follows if the
+/// difference D of their functions is at least -e there, e a small part of a deviation. That follows if `D + e / 2 + m |u|^2` is
+/// nowhere negative, with `m = e / (2 deviations^2)`: if its matrix is positive definite.
+fn implies<T: Real>(one: &UnitSurface<T>, other: &UnitSurface<T>, deviations: T) -> bool {
+    let half = T::of(0.5);
+    let length = |surface: &UnitSurface<T>| surface.half_space.normal.length();
+    let slack = T::of(IMPLIED) * length(one).min(length(other));
+    let n = (other.half_space.normal - one.half_space.normal) * half;
+    let d = other.bend.diagonal - one.bend.diagonal;
+    let a = other.bend.across - one.bend.across;
+    let shift = half * slack / (deviations * deviations);
+    let offset = other.half_space.offset - one.half_space.offset + half * slack;
+    let mut rest = [
+        [d.x + shift, a.x, a.y, n.x],
+        [a.x, d.y + shift, a.z, n.y],
+        [a.y, a.z, d.z + shift, n.z],
+        [n.x, n.y, n.z, offset],
+    ];
+    for i in 0..4 {
+        let pivot = rest[i];
+        let is_positive = pivot[i] > T::zero();
+        if !is_positive {
+            return false;
+        }
+        for row in &mut rest[i + 1..] {
+            let factor = row[i] / pivot[i];
+            for (value, above) in row.iter_mut().zip(pivot) {
+                *value = *value - factor * above;
+            }
+        }
+    }
+    true
+}
+
+/// Takes a surface off a list that changes nothing beside the one that it is joined with: as a capsule's ball within its tube.
+fn leave_out_implied<T: Real>(surfaces: &mut Vec<(UnitSurface<T>, Vec<ClipOp>)>, deviations: T) {
+    let mut i = 1;
+    while i < surfaces.len() {
+        let (below, top) = (&surfaces[i - 1], &surfaces[i]);
+        let op = top.1.first().filter(|_| below.1.is_empty()).copied();
+        let top_implies = implies(&top.0, &below.0, deviations);
+        let (true, Some(op)) = (top_implies || implies(&below.0, &top.0, deviations), op) else {
+            i += 1;
+            continue;
+        };
+        let (top, operators) = surfaces.remove(i);
+        if top_implies != (op == ClipOp::Or) {
+            surfaces[i - 1].0 = top;
+        }
+        surfaces[i - 1].1 = operators[1..].to_vec();
+        i = (i - 1).max(1);
+    }
 }

@@ -2,6 +2,7 @@
 
 use super::quadrature::PixelRays;
 use super::*;
+use crate::region::{Combination, Ellipsoid, RegionRest, reduced};
 use glam::DVec2;
 use rara_scene::clip::Expression;
 
@@ -204,4 +205,70 @@ fn a_region_and_its_complement_keep_the_whole() {
         }
     }
     assert!(partial > 60, "{partial}");
+}
+
+/// What a region leaves of a round splat of deviation .02, as far as 3.5 of them.
+fn left(region: &str, position: [f32; 3]) -> RegionRest<f64> {
+    let one = One {
+        position,
+        scale: [0.02; 3],
+        ..One::default()
+    };
+    let axes = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| Vec3::of(axis * 0.02));
+    let clip = region.parse::<Expression>().unwrap().clip();
+    let ellipsoid = Ellipsoid::new(&scene(&[one]), 0, axes);
+    reduced(&ellipsoid, 3.5, &clip, &mode(Mode::Exact))
+}
+
+#[test]
+fn a_surface_that_changes_nothing_beside_another_is_left_out() {
+    let tube = "capsule:0,0,0,1,0,0,.5";
+    let far = "sphere:0,0,-9,1";
+    let nested = "sphere:0,0,0,.5, sphere:0,.001,0,.52";
+    for (region, position, count) in [
+        (tube.into(), [0.5, 0.5, 0.0], 1),   // the tube alone
+        (tube.into(), [0.1, 0.51, 0.0], 1),  // beside the ball, which lies within the tube
+        (tube.into(), [-0.1, 0.49, 0.0], 1), // the ball alone
+        (tube.into(), [0.0, 0.5, 0.0], 3),   // both, and the plane between them
+        (format!("any({nested})"), [0.0, 0.51, 0.0], 1),
+        (format!("all({nested}, !{far})"), [0.0, 0.51, 0.0], 1),
+        (
+            "any(sphere:0,0,0,.5, sphere:0,.2,0,.32)".into(),
+            [0.0, 0.51, 0.0],
+            2,
+        ),
+        (
+            "any(sphere:0,0,0,.5, sphere:.6,0,0,.5)".into(),
+            [0.3, 0.4, 0.0],
+            2,
+        ),
+    ] {
+        let RegionRest::Cut(surfaces) = left(&region, position) else {
+            panic!("{region} does not cut {position:?}");
+        };
+        assert_eq!(surfaces.len(), count, "{region} {position:?}");
+        assert_eq!(
+            surfaces
+                .iter()
+                .map(|(_, operators)| operators.len())
+                .sum::<usize>(),
+            count - 1
+        );
+        let combination = Combination(surfaces);
+        let clip = region.parse::<Expression>().unwrap().clip();
+        let mut dice = Dice(7);
+        for _ in 0..2000 {
+            // Within 3.5 deviations, and not where the surfaces may be apart by their rounding and by what is left out.
+            let unit = dice.direction() * 3.5 * dice.next().cbrt();
+            let point = DVec3::from(position.map(f64::from)) + unit * 0.02;
+            if clip
+                .all_surfaces()
+                .iter()
+                .all(|s| s.distance(point).abs() > 1e-5)
+            {
+                let kept = combination.keeps(Vec3::of(unit));
+                assert_eq!(kept, clip.keeps(point), "{region} {point}");
+            }
+        }
+    }
 }

@@ -12,7 +12,7 @@ use super::footprint::Footprint;
 use super::real::{Real, vec3};
 use super::region::{
     Ellipsoid, HalfSpace, RegionRest, Side, gaussian_side, reduced, surface_gaussian_side,
-    surface_half_space,
+    surface_half_space, undecided,
 };
 use super::view::ViewTransform;
 use rara_base::limits::{ALPHA_MIN_INVERSE, BEYOND_EYE, WIDENING_REST};
@@ -85,6 +85,17 @@ impl<T: Real> GaussianInView<'_, T> {
     /// What is left of the region where its side is [`Side::Cutoff`].
     pub(super) fn left(&self) -> RegionRest<T> {
         reduced(&self.ellipsoid(), self.band(), self.clip, self.settings)
+    }
+
+    /// How many surfaces pass through it, as far as it reaches, of those on which what is kept of it depends.
+    pub(super) fn cutting_count(&self) -> usize {
+        if self.side() != Side::Cutoff || !self.clip.is_general() {
+            return self.cutting().len();
+        }
+        match undecided(&self.ellipsoid(), self.band(), self.clip, self.settings) {
+            RegionRest::Cut(surfaces) => surfaces.len(),
+            RegionRest::Decided(_) => 0,
+        }
     }
 
     fn ellipsoid(&self) -> Ellipsoid<T> {

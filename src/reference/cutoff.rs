@@ -48,6 +48,24 @@ impl<T: Real> SplatCut<T> {
     }
 }
 
+/// How many surfaces pass through a Gaussian, as far as it reaches, of those on which what is kept of it depends.
+pub fn cutting_count<T: Real>(
+    scene: &Gaussians,
+    index: usize,
+    footprint: &Footprint<T>,
+    clip: &Clip,
+    settings: &Settings,
+) -> usize {
+    let gaussian = GaussianInView {
+        scene,
+        index,
+        footprint,
+        clip,
+        settings,
+    };
+    gaussian.cutting_count()
+}
+
 /// The record of one Gaussian, or nothing if the clip leaves it whole (or none of it).
 pub fn cutoff<T: Real>(
     scene: &Gaussians,

@@ -8,9 +8,9 @@ use crate::common;
 use glam::{DQuat, DVec2, DVec3, Quat, Vec3};
 use rara::clip::Expression;
 use rara::{Camera, Clip, Decay, Gaussians, Headless, Mode, Raster, Settings};
-use rara_reference::cutoff::cutoff;
+use rara_reference::cutoff::cutting_count;
 use rara_reference::quadrature::PixelRays;
-use rara_reference::{Footprint, SplatCut, ViewTransform};
+use rara_reference::{Footprint, ViewTransform};
 
 /// Random cases of each class of size, and the classes: standard deviations in pixels.
 const CASES: usize = 64;
@@ -95,14 +95,9 @@ impl Case {
         let view = ViewTransform::<f64>::new(&self.camera);
         let settings = Settings::default();
         let footprint = Footprint::new(&self.gaussians, 0, &view);
-        let cut = footprint
-            .and_then(|seen| cutoff(&self.gaussians, 0, &seen, &view, &self.clip, &settings));
-        match cut {
-            Some(SplatCut::Affine { planes, .. }) => planes.len(),
-            Some(SplatCut::Beam(beam)) => beam.half_spaces.len(),
-            Some(SplatCut::Combined(combined)) => combined.surfaces.0.len(),
-            _ => 0,
-        }
+        footprint.map_or(0, |seen| {
+            cutting_count(&self.gaussians, 0, &seen, &self.clip, &settings)
+        })
     }
 
     /// A splat of this size in pixels somewhere in the picture, and 1 to 5 shapes about it. Large ones reach around the eye.

@@ -48,7 +48,7 @@ impl<T: Real> RegionRest<T> {
 
 /// What is left of the region of a Gaussian that has a band of `deviations` standard deviations. Beyond [`MAX_CUTTING`] surfaces only those count that are nearest; of the others it is on the side of its
 /// centre.
-pub(crate) fn reduced<T: Real>(
+pub(crate) fn undecided<T: Real>(
     ellipsoid: &Ellipsoid<T>,
     deviations: T,
     clip: &Clip,
@@ -88,7 +88,17 @@ pub(crate) fn reduced<T: Real>(
         };
         (part, step.operators)
     });
-    match answer(answers, RegionRest::Decided(true), |op, a, b| a.join(op, b)) {
+    answer(answers, RegionRest::Decided(true), |op, a, b| a.join(op, b))
+}
+
+/// The same without the surfaces that change nothing.
+pub(crate) fn reduced<T: Real>(
+    ellipsoid: &Ellipsoid<T>,
+    deviations: T,
+    clip: &Clip,
+    settings: &Settings,
+) -> RegionRest<T> {
+    match undecided(ellipsoid, deviations, clip, settings) {
         RegionRest::Cut(mut surfaces) => {
             leave_out_implied(&mut surfaces, deviations);
             for (surface, _) in &mut surfaces {

@@ -209,7 +209,7 @@ void main() {
         return;
     }
     if (COMBINED && is_combined && !beam && count == 1u && FRAME.weight.form == FORM_AUTO) {
-        UnitSurface surface = entry_at(base, 0u);
+        UnitSurface surface = entry_of(base, 0u);
         CurveSource source = source_of_footprint(f);
         source.surface = surface;
         vec3 linear;
@@ -251,7 +251,7 @@ void main() {
         source.half_space = half_space;
         source.bends = is_combined;
         if (COMBINED && is_combined) {
-            source.surface = entry_at(base, 0u);
+            source.surface = entry_of(base, 0u);
         }
         source.centre = f.screen_centre - VIEW.focal.zw;
         source.conic = conic_of(f);

@@ -5,6 +5,7 @@
 #define RARA_REGION_COMBINATION
 #include "region/answers.glsl"
 #include "region/crossing.glsl"
+#include "region/entry.glsl"
 #include "orthant.glsl"
 #include "tail.glsl"
 
@@ -16,11 +17,6 @@ struct RecordSides {
 
 RecordSides all_cutting() {
     return RecordSides(~0u, 0u);
-}
-
-UnitSurface entry_of(uint base, uint entry) {
-    uint at = base + CUT_HEADER + ENTRY_VECTORS * entry;
-    return UnitSurface(cut_records.at[at], cut_records.at[at + 1u].xyz, cut_records.at[at + 2u].xyz);
 }
 
 uint operators_of(uint base, uint entry) {

@@ -4,13 +4,14 @@
 #define RARA_REGION_REDUCED
 #include "cut.glsl"
 #include "footprint.glsl"
+#include "region/entry.glsl"
 #include "region/gaussian_side.glsl"
 
 #define HAS_PARTS COMBINED
 #define PART_ENTRIES MAX_CUTTING
 #include "region/parts.glsl"
 
-// By how many deviations what a surface keeps may reach beyond what another keeps that it is said to be part of.
+// A surface is taken to keep no more than another if it reaches beyond that by at most this, deviations.
 const float IMPLIED = 3e-4;
 
 // About how far a surface that cuts a Gaussian is from its centre, in standard deviations.
@@ -40,11 +41,6 @@ float farthest_counted(Footprint f, vec3 position, float deviations, out uint ro
         room -= ties;
         farthest = next;
     }
-}
-
-UnitSurface entry_at(uint base, uint entry) {
-    uint at = base + CUT_HEADER + ENTRY_VECTORS * entry;
-    return UnitSurface(cut_records.at[at], cut_records.at[at + 1u].xyz, cut_records.at[at + 2u].xyz);
 }
 
 void write_entry(uint base, uint entry, UnitSurface s, uint operators) {
@@ -79,11 +75,14 @@ void leave_out_implied(uint base, float deviations, uint first_entry, inout uint
     for (uint i = 1u; i < entries;) {
         uint operators = entry_operators[first_entry + i];
         uint count = operator_count(operators);
-        bool are_joined = operator_count(entry_operators[first_entry + i - 1u]) == 0u && count > 0u;
-        UnitSurface below = entry_at(base, i - 1u);
-        UnitSurface top = entry_at(base, i);
-        bool top_implies = are_joined && implies(top, below, deviations);
-        if (!top_implies && !(are_joined && implies(below, top, deviations))) {
+        if (operator_count(entry_operators[first_entry + i - 1u]) > 0u || count == 0u) {
+            i++;
+            continue;
+        }
+        UnitSurface below = entry_of(base, i - 1u);
+        UnitSurface top = entry_of(base, i);
+        bool top_implies = implies(top, below, deviations);
+        if (!top_implies && !implies(below, top, deviations)) {
             i++;
             continue;
         }
@@ -94,7 +93,7 @@ void leave_out_implied(uint base, float deviations, uint first_entry, inout uint
         entry_operators[first_entry + i - 1u] = count - 1u | (ors >> 1) << OPERATOR_SHIFT;
         entries--;
         for (uint j = i; j < entries; j++) {
-            write_entry(base, j, entry_at(base, j + 1u), 0u);
+            write_entry(base, j, entry_of(base, j + 1u), 0u);
             entry_operators[first_entry + j] = entry_operators[first_entry + j + 1u];
         }
         i = max(i - 1u, 1u);
@@ -144,7 +143,7 @@ uint write_reduced(uint base, Footprint f, vec3 position, float deviations, out 
     }
     leave_out_implied(base, deviations, first_entry, entries);
     for (uint i = 0u; i < entries; i++) {
-        UnitSurface s = entry_at(base, i);
+        UnitSurface s = entry_of(base, i);
         float size = max(largest(s.half_space.xyz), max(largest(s.diagonal), largest(s.across)));
         float inverse = size > 0.0 ? 1.0 / size : 1.0;
         write_entry(base, i, UnitSurface(s.half_space * inverse, s.diagonal * inverse, s.across * inverse), entry_operators[first_entry + i]);

@@ -12,7 +12,7 @@ use super::footprint::Footprint;
 use super::real::{Real, vec3};
 use super::region::{
     Ellipsoid, HalfSpace, RegionRest, Side, gaussian_side, reduced, surface_gaussian_side,
-    surface_half_space, undecided,
+    surface_half_space,
 };
 use super::view::ViewTransform;
 use rara_base::limits::{ALPHA_MIN_INVERSE, BEYOND_EYE, WIDENING_REST};
@@ -30,14 +30,7 @@ pub fn classify<T: Real>(
 ) -> Vec<Side> {
     (0..scene.len())
         .map(|index| match Footprint::new(scene, index, view) {
-            Some(footprint) => GaussianInView {
-                scene,
-                index,
-                footprint: &footprint,
-                clip,
-                settings,
-            }
-            .side(),
+            Some(seen) => GaussianInView::new(scene, index, &seen, clip, settings).side(),
             None => Side::Culled,
         })
         .collect()
@@ -53,7 +46,23 @@ pub(super) struct GaussianInView<'a, T> {
     pub(super) settings: &'a Settings,
 }
 
-impl<T: Real> GaussianInView<'_, T> {
+impl<'a, T: Real> GaussianInView<'a, T> {
+    pub(super) fn new(
+        scene: &'a Gaussians,
+        index: usize,
+        footprint: &'a Footprint<T>,
+        clip: &'a Clip,
+        settings: &'a Settings,
+    ) -> Self {
+        Self {
+            scene,
+            index,
+            footprint,
+            clip,
+            settings,
+        }
+    }
+
     pub(super) fn side(&self) -> Side {
         gaussian_side(&self.ellipsoid(), self.band(), self.clip, self.settings)
     }
@@ -84,18 +93,22 @@ impl<T: Real> GaussianInView<'_, T> {
 
     /// What is left of the region where its side is [`Side::Cutoff`].
     pub(super) fn left(&self) -> RegionRest<T> {
-        reduced(&self.ellipsoid(), self.band(), self.clip, self.settings)
+        self.reduced().without_implied(self.band())
     }
 
     /// How many surfaces pass through it, as far as it reaches, of those on which what is kept of it depends.
     pub(super) fn cutting_count(&self) -> usize {
         if self.side() != Side::Cutoff || !self.clip.is_general() {
-            return self.cutting().len();
+            return self.cutting_surfaces().len();
         }
-        match undecided(&self.ellipsoid(), self.band(), self.clip, self.settings) {
+        match self.reduced() {
             RegionRest::Cut(surfaces) => surfaces.len(),
             RegionRest::Decided(_) => 0,
         }
+    }
+
+    fn reduced(&self) -> RegionRest<T> {
+        reduced(&self.ellipsoid(), self.band(), self.clip, self.settings)
     }
 
     fn ellipsoid(&self) -> Ellipsoid<T> {

@@ -56,14 +56,7 @@ pub fn cutting_count<T: Real>(
     clip: &Clip,
     settings: &Settings,
 ) -> usize {
-    let gaussian = GaussianInView {
-        scene,
-        index,
-        footprint,
-        clip,
-        settings,
-    };
-    gaussian.cutting_count()
+    GaussianInView::new(scene, index, footprint, clip, settings).cutting_count()
 }
 
 /// The record of one Gaussian, or nothing if the clip leaves it whole (or none of it).
@@ -75,13 +68,7 @@ pub fn cutoff<T: Real>(
     clip: &Clip,
     settings: &Settings,
 ) -> Option<SplatCut<T>> {
-    let gaussian = GaussianInView {
-        scene,
-        index,
-        footprint,
-        clip,
-        settings,
-    };
+    let gaussian = GaussianInView::new(scene, index, footprint, clip, settings);
     if gaussian.side() != Side::Cutoff {
         return None;
     }

@@ -107,13 +107,7 @@ impl<T: Real> SplatDepth<T> {
             near: open,
             op: clip.op,
         };
-        let gaussian = GaussianInView {
-            scene,
-            index,
-            footprint,
-            clip,
-            settings,
-        };
+        let gaussian = GaussianInView::new(scene, index, footprint, clip, settings);
         let surfaces = match clip.is_flat() {
             true => clip.surfaces.clone(),
             false => gaussian.cutting_surfaces(),

@@ -27,7 +27,7 @@ pub use gaussian_side::gaussian_side;
 pub use half_space::HalfSpace;
 pub use quadric::{Symmetric, UnitSurface};
 pub use reduced::RegionRest;
-pub(super) use reduced::{reduced, undecided};
+pub(super) use reduced::reduced;
 pub use share::share;
 pub(super) use sides::keeps;
 pub(super) use surface::{surface_crossings, surface_gaussian_side, surface_half_space};

@@ -34,6 +34,17 @@ impl<T: Real> RegionRest<T> {
         }
     }
 
+    /// The same without the surfaces that change nothing, for a band of so many deviations, and with their numbers scaled.
+    pub(crate) fn without_implied(mut self, deviations: T) -> Self {
+        if let Self::Cut(surfaces) = &mut self {
+            leave_out_implied(surfaces, deviations);
+            for (surface, _) in surfaces {
+                *surface = surface.scaled();
+            }
+        }
+        self
+    }
+
     /// The operation that joins all surfaces, if there is only one such operation and none of the surfaces bends.
     pub(crate) fn as_planes(&self) -> Option<ClipOp> {
         let Self::Cut(surfaces) = self else {
@@ -48,7 +59,7 @@ impl<T: Real> RegionRest<T> {
 
 /// What is left of the region of a Gaussian that has a band of `deviations` standard deviations. Beyond [`MAX_CUTTING`] surfaces only those count that are nearest; of the others it is on the side of its
 /// centre.
-pub(crate) fn undecided<T: Real>(
+pub(crate) fn reduced<T: Real>(
     ellipsoid: &Ellipsoid<T>,
     deviations: T,
     clip: &Clip,
@@ -91,26 +102,7 @@ pub(crate) fn undecided<T: Real>(
     answer(answers, RegionRest::Decided(true), |op, a, b| a.join(op, b))
 }
 
-/// The same without the surfaces that change nothing.
-pub(crate) fn reduced<T: Real>(
-    ellipsoid: &Ellipsoid<T>,
-    deviations: T,
-    clip: &Clip,
-    settings: &Settings,
-) -> RegionRest<T> {
-    match undecided(ellipsoid, deviations, clip, settings) {
-        RegionRest::Cut(mut surfaces) => {
-            leave_out_implied(&mut surfaces, deviations);
-            for (surface, _) in &mut surfaces {
-                *surface = surface.scaled();
-            }
-            RegionRest::Cut(surfaces)
-        }
-        decided @ RegionRest::Decided(_) => decided,
-    }
-}
-
-/// By how many deviations what a surface keeps may reach beyond what another keeps that it is said to be part of.
+/// A surface is taken to keep no more than another if it reaches beyond that by at most this, deviations.
 const IMPLIED: f64 = 3e-4;
 
 /// True when a surface keeps nothing of a Gaussian, as far as `deviations`, that another one does not keep. It follows if the
@@ -151,15 +143,20 @@ fn implies<T: Real>(one: &UnitSurface<T>, other: &UnitSurface<T>, deviations: T)
 fn leave_out_implied<T: Real>(surfaces: &mut Vec<(UnitSurface<T>, Vec<ClipOp>)>, deviations: T) {
     let mut i = 1;
     while i < surfaces.len() {
-        let (below, top) = (&surfaces[i - 1], &surfaces[i]);
-        let op = top.1.first().filter(|_| below.1.is_empty()).copied();
-        let top_implies = implies(&top.0, &below.0, deviations);
-        let (true, Some(op)) = (top_implies || implies(&below.0, &top.0, deviations), op) else {
+        let [(below, []), (top, [op, ..])] =
+            [i - 1, i].map(|i| (&surfaces[i].0, &surfaces[i].1[..]))
+        else {
             i += 1;
             continue;
         };
+        let top_implies = implies(top, below, deviations);
+        if !top_implies && !implies(below, top, deviations) {
+            i += 1;
+            continue;
+        }
+        let keeps_top = top_implies != (*op == ClipOp::Or);
         let (top, operators) = surfaces.remove(i);
-        if top_implies != (op == ClipOp::Or) {
+        if keeps_top {
             surfaces[i - 1].0 = top;
         }
         surfaces[i - 1].1 = operators[1..].to_vec();

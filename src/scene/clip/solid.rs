@@ -312,7 +312,7 @@ fn capsule(from: DVec3, to: DVec3, radius: f64) -> Result<Clip> {
     Ok(Clip::joined([Clip::of(ends, ClipOp::Or), side], ClipOp::Or))
 }
 
-/// What a quadric keeps between the planes across a line at two of its points.
+/// Returns what a quadric keeps between the planes across a line at two of its points.
 fn between(quadric: Quadric, from: DVec3, to: DVec3) -> Result<Clip> {
     let along = to - from;
     let along = along / along.abs().max_element();

@@ -154,7 +154,8 @@ void project(uint splat_index, uint index, float x, uint first) {
 
 void main() {
     uint count = counts.at[0].visible + counts.at[0].cutoff;
-    uint splat_index = LINEAR_GROUP * SPLAT_GROUP_SIZE + gl_LocalInvocationIndex;
+    uint first_splat = LINEAR_GROUP * SPLAT_GROUP_SIZE;
+    uint splat_index = first_splat + gl_LocalInvocationIndex;
     uint index[TURNS];
     float x[TURNS];
     uint first[TURNS];
@@ -165,8 +166,14 @@ void main() {
         x[turn] = gaussians.at[index[turn]].position_opacity.x;
         first[turn] = sh.at[sh_base(index[turn])];
     }
-    for (uint turn = 0u; turn < TURNS && splat_index < count; turn++) {
+    // Counted by splats, since compilers copy the body of a loop over the arrays for each turn, which takes CPU drivers twelve
+    // times as long to compile, and twenty where buffers are bound. On GPUs, where it has one turn, no loop is left.
+    uint end = min(count, first_splat + SPLAT_GROUP_SIZE);
+    for (; splat_index < end; splat_index += gl_WorkGroupSize.x) {
+        uint turn = (splat_index - first_splat) / gl_WorkGroupSize.x;
         project(splat_index, index[turn], x[turn], first[turn]);
-        splat_index += gl_WorkGroupSize.x;
+        if (TURNS == 1u) {
+            break;
+        }
     }
 }

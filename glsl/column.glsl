@@ -278,17 +278,9 @@ void chord_weights(Record record, uint flags, vec2 delta, vec2 pixel_centre, out
     }
 }
 
-// The weights of a combined record. Where a single surface weighs the pixels, it is read once for all of them.
+// The weights of a combined record. Where one or two surfaces cut the tile, all its pixels have them at hand.
 void combined_weights(Record record, uint flags, vec2 delta, vec2 pixel_centre, float alpha[ROWS], out float weight[ROWS]) {
-    uint base = record_base(record);
-    uint count = flags >> CUT_COUNT_SHIFT;
-    RecordSides sides = record_sides(record);
-    uint cutting = sides.cutting & ((1u << count) - 1u);
-    bool is_surface = READS_ONCE && CLIP_MODE == MODE_EXACT && bitCount(cutting) == 1 && (flags & CUT_FRONT) == 0u;
-    UnitSurface surface;
-    if (is_surface) {
-        surface = entry_of(base, uint(findLSB(cutting)));
-    }
+    TileSurfaces surfaces = record_surfaces(record);
     uint rows = 0u;
     for (uint row = 0u; row < ROWS; row++) {
         weight[row] = 1.0;
@@ -300,13 +292,18 @@ void combined_weights(Record record, uint flags, vec2 delta, vec2 pixel_centre, 
         vec2 below = vec2(0.0, float(at));
         Sight s = sight_through(RECORD_AT(record, 0), RECORD_AT(record, 1), RECORD_AT(record, 2), pixel_centre + below - principal_point(), delta + below);
         float share;
-        if (is_surface) {
+        bool is_known = false;
+        if (surfaces.answers == FIRST_KEEPS) {
             Line line = line_through(s);
             float moved;
-            Crossed crossing = crossed(line, surface, moved);
-            share = share_of_surface(line, surface, crossing, moved);
-        } else {
-            share = combined_weight(s, base, flags, sides, push.params.sigma);
+            Crossed crossing = crossed(line, surfaces.first, moved);
+            share = share_of_surface(line, surfaces.first, crossing, moved);
+            is_known = true;
+        } else if (surfaces.answers != 0u) {
+            is_known = share_of_two_surfaces(line_through(s), surfaces, share);
+        }
+        if (!is_known) {
+            share = combined_weight(s, record_base(record), flags, record_sides(record), push.params.sigma);
         }
         for (uint row = 0u; row < ROWS; row++) {
             weight[row] = row == at ? share : weight[row];

@@ -5,14 +5,12 @@
 
 #ifdef RARA_SUBGROUP
 
-// An invocation weighs several pixels, for which it reads a surface once.
-const bool READS_ONCE = true;
-
 // Where the record is, and its first vec4s, which suffice for one surface: an invocation loads them once for all.
 struct Record {
     uint base;
     vec4 begin[TERMS_VECTORS]; // beyond the first CUT_HEADER + 1 only those of a surface's terms
     RecordSides sides;
+    TileSurfaces surfaces;
 };
 #define RECORD_AT(record, i) record.begin[i]
 
@@ -24,6 +22,7 @@ uint record_base(Record record) {
 Record record_of(vec3 linear) {
     Record record;
     record.sides = all_cutting();
+    record.surfaces.answers = 0u;
     if (linear.x < -Z_RANGE) {
         record.base = record_number(linear) * push.params.cut_stride;
         for (uint i = 0u; i <= CUT_HEADER; i++) {
@@ -39,8 +38,6 @@ Record record_of(vec3 linear) {
 }
 
 #else
-
-const bool READS_ONCE = false;
 
 // On GPUs each pixel reads the record itself: it would take too many registers.
 struct Record {
@@ -77,6 +74,16 @@ RecordSides record_sides(Record record) {
 #else
     return all_cutting();
 #endif
+}
+
+TileSurfaces record_surfaces(Record record) {
+    TileSurfaces surfaces;
+#ifdef RARA_SUBGROUP
+    surfaces = record.surfaces;
+#else
+    surfaces.answers = 0u;
+#endif
+    return surfaces;
 }
 
 #endif

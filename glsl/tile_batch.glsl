@@ -63,6 +63,10 @@ Seen taken_over(uint i) {
     return splat;
 }
 
+UnitSurface surface_of(uint i, UnitSurface surface) {
+    return UnitSurface(OF(i, surface.half_space), OF(i, surface.diagonal), OF(i, surface.across));
+}
+
 // Takes over the weight of a splat that is cut: the polynomial that it carries, and its record if it has one.
 Record weight_taken_over(uint i, inout Seen splat) {
     Record record;
@@ -85,6 +89,13 @@ Record weight_taken_over(uint i, inout Seen splat) {
         record.sides = all_cutting();
         if (SEVERAL && COMBINED) {
             record.sides = RecordSides(OF(i, mine_record.sides.cutting), OF(i, mine_record.sides.visible));
+        }
+        record.surfaces.answers = COMBINED && CLIP_MODE == MODE_EXACT ? OF(i, mine_record.surfaces.answers) : 0u;
+        if (record.surfaces.answers != 0u) {
+            record.surfaces.first = surface_of(i, mine_record.surfaces.first);
+        }
+        if (record.surfaces.answers != 0u && record.surfaces.answers != FIRST_KEEPS) {
+            record.surfaces.second = surface_of(i, mine_record.surfaces.second);
         }
     }
     return record;

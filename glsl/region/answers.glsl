@@ -27,6 +27,15 @@ uint answered(uint stack, bool answer, uint operators) {
     return stack;
 }
 
+// The same with four answers at once, on a stack of eight.
+uint four_answered(uint stack, uint answers, uint operators) {
+    stack = stack << 4 | answers;
+    for (uint i = 0u; i < operator_count(operators); i++) {
+        stack = is_or(operators, i) ? stack >> 4 | (stack & 15u) : (stack >> 4) & (stack | ~15u);
+    }
+    return stack;
+}
+
 void answer(inout Answers answers, uint side, uint operators) {
     answers.surely = answered(answers.surely, side == SIDE_VISIBLE, operators);
     answers.maybe = answered(answers.maybe, side != SIDE_INVISIBLE, operators);

@@ -19,6 +19,16 @@ RecordSides all_cutting() {
     return RecordSides(~0u, 0u);
 }
 
+// Where at most two surfaces of a record cut a tile: these, and for each combination of their sides whether the region keeps that,
+// a bit each; 0 where it is not known.
+struct TileSurfaces {
+    UnitSurface first, second;
+    uint answers;
+};
+// The combinations in which one of two surfaces is on its kept side: where the region keeps these, the other does not matter.
+const uint FIRST_KEEPS = 0xau;
+const uint SECOND_KEEPS = 0xcu;
+
 uint operators_of(uint base, uint entry) {
     return to_uint(cut_records.at[base + CUT_HEADER + ENTRY_VECTORS * entry + 1u].w);
 }
@@ -260,6 +270,29 @@ float share_of_sides(Line line, uint base, uint count, RecordSides sides, out ui
         + bit_of(answers, 6u) * (pairs.z - all) + bit_of(answers, 1u) * (p - pairs.x - pairs.y + all)
         + bit_of(answers, 2u) * (q - pairs.x - pairs.z + all) + bit_of(answers, 4u) * (r - pairs.y - pairs.z + all)
         + bit_of(answers, 0u) * (1.0 - p - q - r + pairs.x + pairs.y + pairs.z - all);
+}
+
+// The share by mode `exact` that two surfaces keep together. False where one of them is crossed twice.
+bool share_of_two_surfaces(Line line, TileSurfaces surfaces, out float share) {
+    float moved;
+    Crossed first = crossed(line, surfaces.first, moved);
+    Crossed second = crossed(line, surfaces.second, moved);
+    vec2 z = vec2(first.at.z, second.at.z);
+    bvec2 open = lessThan(abs(z), vec2(PHI_ONE));
+    float p = open.x ? phi(z.x) : z.x > 0.0 ? 1.0 : 0.0;
+    float q = open.y ? phi(z.y) : z.y > 0.0 ? 1.0 : 0.0;
+    float both = p * q;
+    if (all(open)) {
+        vec3 a = first.gradient;
+        vec3 b = second.gradient;
+        Sight s = line.s;
+        both = both_positive(Threshold(z.x, keeps_far(dot(a, s.c), a), direction(s, a)),
+                             Threshold(z.y, keeps_far(dot(b, s.c), b), direction(s, b)));
+    }
+    uint answers = surfaces.answers;
+    share = bit_of(answers, 3u) * both + bit_of(answers, 1u) * (p - both) + bit_of(answers, 2u) * (q - both)
+        + bit_of(answers, 0u) * (1.0 - p - q + both);
+    return min(abs(first.at.other), abs(second.at.other)) >= PHI_ONE;
 }
 
 // True when the surfaces keep a point of the unit space.

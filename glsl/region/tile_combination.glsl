@@ -54,15 +54,34 @@ uint combination_side(inout Record record, uint flags, vec2 delta, vec2 middle) 
     }
     TileSight tile = tile_sight(record, delta, middle);
     TilePoints points = tile_points(tile, TILE_MARGIN * (CLIP_MODE == MODE_RARA ? push.params.sigma : PHI_ONE));
-    Answers answers = Answers(0u, 0u);
+    uint stack = 0u;
     record.sides = RecordSides(0u, 0u);
     for (uint i = 0u; i < flags >> CUT_COUNT_SHIFT; i++) {
-        uint side = surface_side(tile, points, entry_of(record_base(record), i));
-        answer(answers, side, operators_of(record_base(record), i));
-        record.sides.cutting |= side == SIDE_CUTOFF ? 1u << i : 0u;
+        UnitSurface surface = entry_of(record_base(record), i);
+        uint side = surface_side(tile, points, surface);
+        uint answers = side == SIDE_VISIBLE ? 15u : 0u;
         record.sides.visible |= side == SIDE_VISIBLE ? 1u << i : 0u;
+        if (side == SIDE_CUTOFF) {
+            bool is_first = record.sides.cutting == 0u;
+            answers = is_first ? FIRST_KEEPS : SECOND_KEEPS;
+            if (is_first) {
+                record.surfaces.first = surface;
+            } else {
+                record.surfaces.second = surface;
+            }
+            record.sides.cutting |= 1u << i;
+        }
+        stack = four_answered(stack, answers, operators_of(record_base(record), i));
     }
-    return side_answered(answers);
+    uint answers = stack & 15u;
+    if (answers == SECOND_KEEPS) {
+        record.surfaces.first = record.surfaces.second;
+    }
+    if (bitCount(record.sides.cutting) <= 2) {
+        record.surfaces.answers = answers == SECOND_KEEPS ? FIRST_KEEPS : answers;
+    }
+    // No operator drops what would be kept of less, so that the other combinations lie between.
+    return (answers & 1u) != 0u ? SIDE_VISIBLE : (answers & 8u) == 0u ? SIDE_INVISIBLE : SIDE_CUTOFF;
 }
 
 #endif

@@ -292,17 +292,7 @@ void combined_weights(Record record, uint flags, vec2 delta, vec2 pixel_centre, 
         vec2 below = vec2(0.0, float(at));
         Sight s = sight_through(RECORD_AT(record, 0), RECORD_AT(record, 1), RECORD_AT(record, 2), pixel_centre + below - principal_point(), delta + below);
         float share;
-        bool is_known = false;
-        if (surfaces.answers == FIRST_KEEPS) {
-            Line line = line_through(s);
-            float moved;
-            Crossed crossing = crossed(line, surfaces.first, moved);
-            share = share_of_surface(line, surfaces.first, crossing, moved);
-            is_known = true;
-        } else if (surfaces.answers != 0u) {
-            is_known = share_of_two_surfaces(line_through(s), surfaces, share);
-        }
-        if (!is_known) {
+        if (surfaces.answers == 0u || !share_of_tile_surfaces(line_through(s), surfaces, share)) {
             share = combined_weight(s, record_base(record), flags, record_sides(record), push.params.sigma);
         }
         for (uint row = 0u; row < ROWS; row++) {

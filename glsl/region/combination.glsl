@@ -199,6 +199,15 @@ float bit_of(uint answers, uint sides) {
     return float(answers >> sides & 1u);
 }
 
+// The chance of the combinations of three sides that the region keeps, from the chances that each is the kept one, that the first
+// two are, the first and the third, the last two, and all three.
+float share_of_answers(uint answers, float p, float q, float r, vec3 pairs, float all) {
+    return bit_of(answers, 7u) * all + bit_of(answers, 3u) * (pairs.x - all) + bit_of(answers, 5u) * (pairs.y - all)
+        + bit_of(answers, 6u) * (pairs.z - all) + bit_of(answers, 1u) * (p - pairs.x - pairs.y + all)
+        + bit_of(answers, 2u) * (q - pairs.x - pairs.z + all) + bit_of(answers, 4u) * (r - pairs.y - pairs.z + all)
+        + bit_of(answers, 0u) * (1.0 - p - q - r + pairs.x + pairs.y + pairs.z - all);
+}
+
 // The share of a single surface by mode `exact`, from its crossing.
 float share_of_surface(Line line, UnitSurface surface, Crossed crossing, float moved) {
     if (moved > 0.0) {
@@ -266,16 +275,17 @@ float share_of_sides(Line line, uint base, uint count, RecordSides sides, out ui
         r = phi(t2.z);
         all = three_positive(t0, t1, t2, pairs);
     }
-    return bit_of(answers, 7u) * all + bit_of(answers, 3u) * (pairs.x - all) + bit_of(answers, 5u) * (pairs.y - all)
-        + bit_of(answers, 6u) * (pairs.z - all) + bit_of(answers, 1u) * (p - pairs.x - pairs.y + all)
-        + bit_of(answers, 2u) * (q - pairs.x - pairs.z + all) + bit_of(answers, 4u) * (r - pairs.y - pairs.z + all)
-        + bit_of(answers, 0u) * (1.0 - p - q - r + pairs.x + pairs.y + pairs.z - all);
+    return share_of_answers(answers, p, q, r, pairs, all);
 }
 
-// The share by mode `exact` that two surfaces keep together. False where one of them is crossed twice.
-bool share_of_two_surfaces(Line line, TileSurfaces surfaces, out float share) {
+// The share by mode `exact` that a tile's surfaces keep together. False where one of two is crossed twice.
+bool share_of_tile_surfaces(Line line, TileSurfaces surfaces, out float share) {
     float moved;
     Crossed first = crossed(line, surfaces.first, moved);
+    if (surfaces.answers == FIRST_KEEPS) {
+        share = share_of_surface(line, surfaces.first, first, moved);
+        return true;
+    }
     Crossed second = crossed(line, surfaces.second, moved);
     vec2 z = vec2(first.at.z, second.at.z);
     bvec2 open = lessThan(abs(z), vec2(PHI_ONE));
@@ -289,9 +299,7 @@ bool share_of_two_surfaces(Line line, TileSurfaces surfaces, out float share) {
         both = both_positive(Threshold(z.x, keeps_far(dot(a, s.c), a), direction(s, a)),
                              Threshold(z.y, keeps_far(dot(b, s.c), b), direction(s, b)));
     }
-    uint answers = surfaces.answers;
-    share = bit_of(answers, 3u) * both + bit_of(answers, 1u) * (p - both) + bit_of(answers, 2u) * (q - both)
-        + bit_of(answers, 0u) * (1.0 - p - q + both);
+    share = share_of_answers(surfaces.answers, p, q, 0.0, vec3(both, 0.0, 0.0), 0.0);
     return min(abs(first.at.other), abs(second.at.other)) >= PHI_ONE;
 }
 

@@ -76,10 +76,9 @@ uint combination_side(inout Record record, uint flags, vec2 delta, vec2 middle) 
     uint answers = stack & 15u;
     if (answers == SECOND_KEEPS) {
         record.surfaces.first = record.surfaces.second;
+        answers = FIRST_KEEPS;
     }
-    if (bitCount(record.sides.cutting) <= 2) {
-        record.surfaces.answers = answers == SECOND_KEEPS ? FIRST_KEEPS : answers;
-    }
+    record.surfaces.answers = bitCount(record.sides.cutting) <= 2 ? answers : 0u;
     // No operator drops what would be kept of less, so that the other combinations lie between.
     return (answers & 1u) != 0u ? SIDE_VISIBLE : (answers & 8u) == 0u ? SIDE_INVISIBLE : SIDE_CUTOFF;
 }

@@ -9,8 +9,6 @@ struct Params {
 #include "region/sides.glsl"
 #include "groups.glsl"
 
-layout(local_size_x = BLOCK_SIZE) in;
-
 BUFFER(readonly, 1, uint, sides)
 BUFFER(writeonly, 2, uint, block_list)
 BUFFER(writeonly, 3, FrameCounts, counts)

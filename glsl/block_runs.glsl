@@ -1,10 +1,13 @@
-// Runs of consecutive blocks, one for each invocation of the workgroups that a list of blocks is made by: a single one on CPU
-// drivers, and one for BLOCK_SIZE blocks on GPUs. Each workgroup adds up the blocks before its own by itself, so that none
-// waits for another. Included by workgroups of BLOCK_SIZE.
+// Runs of consecutive blocks, one for each invocation of the workgroups that a list of blocks is made by: a single one of one
+// row on CPU drivers, and one of BLOCK_SIZE invocations for as many blocks on GPUs. Each workgroup adds up the blocks before
+// its own by itself, so that none waits for another.
 #ifndef RARA_BLOCK_RUNS
 #define RARA_BLOCK_RUNS
 #include "frame.glsl"
 #include "runs.glsl"
+
+layout(local_size_x_id = 14) in;
+const uint RUNS = gl_WorkGroupSize.x; // of a workgroup
 
 // The counts of a block that are added up. Whoever includes this defines it.
 uvec4 totals_of(uint block);
@@ -19,29 +22,28 @@ struct BlockRun {
 const uint BLOCKS_AT_ONCE = 8u;
 
 // The invocations stand in rows, as in workgroup_sum.glsl.
-const uint RUN_ROW = 16u;
-const uint RUN_ROWS = BLOCK_SIZE / RUN_ROW;
+const uint RUN_ROWS = (RUNS + RUN_ROW - 1u) / RUN_ROW;
 
-shared uvec4 run_totals[BLOCK_SIZE];
-shared uvec4 earlier_totals[BLOCK_SIZE];
+shared uvec4 run_totals[RUNS];
+shared uvec4 earlier_totals[RUNS];
 // The totals of each row: of its runs, and of everything earlier that its invocations have found.
 shared uvec4 runs_of_rows[RUN_ROWS];
 shared uvec4 earlier_of_rows[RUN_ROWS];
 
 BlockRun block_run() {
     uint local = gl_LocalInvocationIndex;
-    uint runs = gl_NumWorkGroups.x * BLOCK_SIZE;
+    uint runs = gl_NumWorkGroups.x * RUNS;
     uint blocks = FRAME.scene.block_count;
     uvec2 bounds = run_bounds(gl_GlobalInvocationID.x, runs, blocks);
     uvec4 total = uvec4(0u);
     for (uint block = bounds.x; block < bounds.y; block++) {
         total += totals_of(block);
     }
-    uint workgroup_begin = run_bounds(gl_WorkGroupID.x * BLOCK_SIZE, runs, blocks).x;
+    uint workgroup_begin = run_bounds(gl_WorkGroupID.x * RUNS, runs, blocks).x;
     uvec4 earlier = uvec4(0u);
-    for (uint first = 0u; first < workgroup_begin; first += BLOCKS_AT_ONCE * BLOCK_SIZE) {
+    for (uint first = 0u; first < workgroup_begin; first += BLOCKS_AT_ONCE * RUNS) {
         for (uint k = 0u; k < BLOCKS_AT_ONCE; k++) {
-            uint block = first + k * BLOCK_SIZE + local;
+            uint block = first + k * RUNS + local;
             uvec4 totals = totals_of(min(block, workgroup_begin - 1u));
             earlier += block < workgroup_begin ? totals : uvec4(0u);
         }

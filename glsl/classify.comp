@@ -1,13 +1,12 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// One workgroup a block that neither view nor clip settles as a whole, one invocation a Gaussian. It culls by footprint,
-// opacity and size, and finds the side of what is in view. It writes two bits a Gaussian (survives, is cut) and the
+// One workgroup a block that neither view nor clip settles as a whole. It culls by footprint, opacity and size, and finds
+// the side of what is in view. It writes two bits a Gaussian (survives, is cut) and the
 // block's totals; compact turns them into ordered lists.
 #include "band.glsl"
 #define SETS 3u // visible, cut, invisible
 #include "side_masks.glsl"
 
-layout(local_size_x = BLOCK_SIZE) in;
 layout(constant_id = 0) const bool CLIP = false;
 
 BUFFER(readonly, 2, Gaussian, gaussians)
@@ -74,17 +73,25 @@ uint classify(uint block, uint local, bool is_in_view) {
 }
 
 void main() {
-    uint local = gl_LocalInvocationIndex;
     uint group = LINEAR_GROUP;
     bool is_block = group < counts.at[0].classify_groups.w;
     uint entry = is_block ? block_list.at[group] : 0u;
     uint block = entry & ~WHOLLY_IN_VIEW;
     enter_layer_of_block(block);
-    uint side = SIDE_CULLED;
-    if (is_block && local < block_length(block)) {
-        side = classify(block, local, (entry & WHOLLY_IN_VIEW) != 0u);
+    uint length = is_block ? block_length(block) : 0u;
+    begin_masks();
+    for (uint turn = 0u; turn < TURNS; turn++) {
+        uint local = local_in_turn(turn);
+        if (local < length) {
+            uint side = classify(block, local, (entry & WHOLLY_IN_VIEW) != 0u);
+            add_to_masks(turn, side == SIDE_VISIBLE ? 1u : side == SIDE_CUTOFF ? 2u : side == SIDE_INVISIBLE ? 4u : 0u);
+        }
+        if (TURNS == 1u) {
+            break;
+        }
     }
-    find_masks(side == SIDE_VISIBLE ? 1u : side == SIDE_CUTOFF ? 2u : side == SIDE_INVISIBLE ? 4u : 0u);
+    end_masks();
+    uint local = gl_LocalInvocationIndex;
     if (is_block && local < WORDS) {
         uint cut = set_masks[WORDS + local];
         masks.at[block * 2u * WORDS + local] = set_masks[local] | cut;

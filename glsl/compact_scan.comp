@@ -7,8 +7,6 @@
 #include "region/sides.glsl"
 #include "groups.glsl"
 
-layout(local_size_x = BLOCK_SIZE) in;
-
 BUFFER(readonly, 1, uint, block_sides)
 BUFFER(readonly, 2, uvec4, block_counts)
 BUFFER(writeonly, 3, uvec2, block_offsets)

@@ -28,6 +28,8 @@ const float ALPHA_MIN = 1.0 / ALPHA_MIN_INVERSE;
 const uint BLOCK_SIZE = 256u;
 // Blocks that a workgroup decides about at a time.
 const uint BLOCK_GROUP_SIZE = 64u;
+// Invocations that add up the counts of a row of runs of blocks. A list of blocks takes a single row on CPU drivers.
+const uint RUN_ROW = 16u;
 // Words that a reclipped frame keeps of a block: see reclip.glsl.
 const uint RECLIP_WORDS = 32u;
 // Standard deviation on the screen up to which single precision surely finds a splat's conic, px.

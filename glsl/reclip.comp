@@ -1,13 +1,11 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// One workgroup a block between the clip's old and new surface, one invocation a Gaussian, which finds its side now, and
-// whether what the rasteriser holds of it has to change.
+// One workgroup a block between the clip's old and new surface finds the side of each of its Gaussians now, and whether
+// what the rasteriser holds of it has to change.
 #include "band.glsl"
 #include "reclip.glsl"
 #define SETS 4u // visible, cut, invisible, and those of which what the rasteriser holds changes
 #include "side_masks.glsl"
-
-layout(local_size_x = BLOCK_SIZE) in;
 
 BUFFER(readonly, 2, Gaussian, gaussians)
 BUFFER(readonly, 3, uint, block_list)
@@ -48,22 +46,29 @@ bool is_in_view(uint block, uint local) {
 }
 
 void main() {
-    uint local = gl_LocalInvocationIndex;
     uint group = LINEAR_GROUP;
     bool is_block = group < counts.at[0].clip_groups.w;
     uint block = is_block ? block_list.at[group] : 0u;
     enter_layer_of_block(block);
-    uint sets = 0u;
-    if (is_block && local < block_length(block) && is_in_view(block, local)) {
-        uint before = gaussian_side_before(block, local);
-        uint now = gaussian_side_now(block, block * BLOCK_SIZE + local);
-        sets = now == SIDE_VISIBLE ? 1u : now == SIDE_CUTOFF ? 2u : 4u;
-        sets |= now != before || now == SIDE_CUTOFF ? 8u : 0u;
+    uint length = is_block ? block_length(block) : 0u;
+    begin_masks();
+    for (uint turn = 0u; turn < TURNS; turn++) {
+        uint local = local_in_turn(turn);
+        if (local < length && is_in_view(block, local)) {
+            uint before = gaussian_side_before(block, local);
+            uint now = gaussian_side_now(block, block * BLOCK_SIZE + local);
+            uint sets = now == SIDE_VISIBLE ? 1u : now == SIDE_CUTOFF ? 2u : 4u;
+            add_to_masks(turn, sets | (now != before || now == SIDE_CUTOFF ? 8u : 0u));
+        }
+        if (TURNS == 1u) {
+            break;
+        }
     }
-    find_masks(sets);
+    end_masks();
     if (!is_block) {
         return;
     }
+    uint local = gl_LocalInvocationIndex;
     uint base = block * RECLIP_WORDS;
     if (local < WORDS) {
         reclips.at[base + RECLIP_VISIBLE + local] = set_masks[local];

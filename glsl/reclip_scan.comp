@@ -6,8 +6,6 @@
 #include "reclip.glsl"
 #include "groups.glsl"
 
-layout(local_size_x = BLOCK_SIZE) in;
-
 BUFFER(readonly, 1, uint, revisits)
 BUFFER(, 2, uint, reclips)
 BUFFER(writeonly, 3, FrameCounts, counts)

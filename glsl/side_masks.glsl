@@ -4,37 +4,45 @@
 #define RARA_SIDE_MASKS
 #include "masks.glsl"
 
-// GPUs put bits together by atomics; CPU drivers would carry those out one after the other.
-layout(constant_id = 14) const bool ATOMIC_MASKS = false;
+layout(local_size_x_id = 14) in;
+// Consecutive Gaussians of an invocation: one on GPUs, and on processors, whose workgroups are small, those of a mask's word.
+const uint TURNS = BLOCK_SIZE / gl_WorkGroupSize.x;
 
-shared uint sets_of[ATOMIC_MASKS ? 1u : BLOCK_SIZE];
 // The masks, each WORDS long.
 shared uint set_masks[SETS * WORDS];
+// The bits of the invocation's own Gaussians, the first of which is the lowest bit.
+uint own_bits[SETS];
 
-// The whole workgroup finds the masks; `sets` has a bit for each set that the invocation's Gaussian belongs to.
-void find_masks(uint sets) {
-    uint local = gl_LocalInvocationIndex;
-    bool has_word = local < SETS * WORDS;
-    if (ATOMIC_MASKS) {
-        if (has_word) {
-            set_masks[local] = 0u;
-        }
-        barrier();
-        for (uint set = 0u; set < SETS; set++) {
-            if ((sets >> set & 1u) != 0u) {
-                // A union does not depend on the order of the atomics.
-                atomicOr(set_masks[set * WORDS + (local >> 5)], 1u << (local & 31u));
-            }
-        }
-    } else {
-        sets_of[local] = sets;
-        barrier();
-        if (has_word) {
-            uint mask = 0u;
-            for (uint i = 0u; i < 32u; i++) {
-                mask |= (sets_of[32u * (local % WORDS) + i] >> local / WORDS & 1u) << i;
-            }
-            set_masks[local] = mask;
+// The Gaussian of the invocation's turn, in its block.
+uint local_in_turn(uint turn) {
+    return gl_LocalInvocationIndex * TURNS + turn;
+}
+
+// The whole workgroup begins empty masks.
+void begin_masks() {
+    for (uint set = 0u; set < SETS; set++) {
+        own_bits[set] = 0u;
+    }
+    for (uint word = gl_LocalInvocationIndex; word < SETS * WORDS; word += gl_WorkGroupSize.x) {
+        set_masks[word] = 0u;
+    }
+}
+
+// `sets` has a bit for each set that the Gaussian of this turn belongs to.
+void add_to_masks(uint turn, uint sets) {
+    for (uint set = 0u; set < SETS; set++) {
+        own_bits[set] |= (sets >> set & 1u) << turn;
+    }
+}
+
+// The whole workgroup puts its bits together.
+void end_masks() {
+    barrier();
+    uint first = local_in_turn(0u);
+    for (uint set = 0u; set < SETS; set++) {
+        if (own_bits[set] != 0u) {
+            // A union does not depend on the order of the atomics.
+            atomicOr(set_masks[set * WORDS + (first >> 5)], own_bits[set] << (first & 31u));
         }
     }
     barrier();

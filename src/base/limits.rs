@@ -27,6 +27,8 @@ pub const ALPHA_MIN: f32 = 1.0 / ALPHA_MIN_INVERSE;
 pub const BLOCK_SIZE: u32 = 256;
 /// Blocks that a workgroup decides about at a time.
 pub const BLOCK_GROUP_SIZE: u32 = 64;
+/// Invocations that add up the counts of a row of runs of blocks. A list of blocks takes a single row on CPU drivers.
+pub const RUN_ROW: u32 = 16;
 /// Words that a reclipped frame keeps of a block: see reclip.glsl.
 pub const RECLIP_WORDS: u32 = 32;
 /// Standard deviation on the screen up to which single precision surely finds a splat's conic, px.

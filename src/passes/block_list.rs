@@ -51,8 +51,16 @@ pub(crate) fn groups_of_list(plan: &Plan) -> Groups {
     let blocks = plan.data.scene.block_count;
     Groups::Count(match plan.way.shape {
         DeviceShape::Cpu => 1,
-        DeviceShape::Gpu { .. } => blocks.div_ceil(limits::BLOCK_SIZE).max(1),
+        DeviceShape::Gpu { .. } => blocks.div_ceil(list_invocations(plan)).max(1),
     })
+}
+
+/// The invocations of each of them.
+pub(crate) fn list_invocations(plan: &Plan) -> u32 {
+    match plan.way.shape {
+        DeviceShape::Cpu => limits::RUN_ROW,
+        DeviceShape::Gpu { .. } => limits::BLOCK_SIZE,
+    }
 }
 
 /// An invocation a block.

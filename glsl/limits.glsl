@@ -55,8 +55,10 @@ const uint TIES_ALONE = 24u;
 // Surfaces that a splat is weighed by where regions have parts or bend, those that cut it nearest its centre. Of the others
 // it is on the side of its centre. A region that is a flat list of planes has no such limit.
 const uint MAX_CUTTING = 8u;
-// Surfaces of a region from which its blocks have shortlists: the surfaces that may cut a Gaussian of the block.
+// Surfaces of a region from which its blocks have shortlists on GPUs: the surfaces that may cut a Gaussian of the block.
 const uint SHORTLIST_FROM = 9u;
+// The same on CPU drivers, on which a shortlist takes no registers from other work.
+const uint SHORTLIST_FROM_ON_CPU = 3u;
 // The most surfaces of a shortlist. The Gaussians of a block that more may cut ask all surfaces of the region.
 const uint SHORTLIST_SURFACES = 31u;
 // Words of a shortlist: see region/shortlist.glsl.

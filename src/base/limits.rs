@@ -54,8 +54,10 @@ pub const TIES_ALONE: u32 = 24;
 /// Surfaces that a splat is weighed by where regions have parts or bend, those that cut it nearest its centre. Of the others
 /// it is on the side of its centre. A region that is a flat list of planes has no such limit.
 pub const MAX_CUTTING: u32 = 8;
-/// Surfaces of a region from which its blocks have shortlists: the surfaces that may cut a Gaussian of the block.
+/// Surfaces of a region from which its blocks have shortlists on GPUs: the surfaces that may cut a Gaussian of the block.
 pub const SHORTLIST_FROM: u32 = 9;
+/// The same on CPU drivers, on which a shortlist takes no registers from other work.
+pub const SHORTLIST_FROM_ON_CPU: u32 = 3;
 /// The most surfaces of a shortlist. The Gaussians of a block that more may cut ask all surfaces of the region.
 pub const SHORTLIST_SURFACES: u32 = 31;
 /// Words of a shortlist: see region/shortlist.glsl.

@@ -18,6 +18,14 @@ memory! {
     };
 }
 
+/// The surfaces of a region from which blocks have shortlists.
+pub(crate) fn shortlist_from(shape: DeviceShape) -> u32 {
+    match shape {
+        DeviceShape::Cpu => limits::SHORTLIST_FROM_ON_CPU,
+        DeviceShape::Gpu { .. } => limits::SHORTLIST_FROM,
+    }
+}
+
 /// Bytes of the two masks of a block, a bit a Gaussian in each.
 pub(super) const MASK_BYTES: u64 = 2 * limits::BLOCK_SIZE as u64 / 8;
 

@@ -1,7 +1,7 @@
 //! The stages of the frame, one file each: buffers in, buffers out. [`frame`] lists them in order.
 
 mod bin;
-mod block_list;
+pub(crate) mod block_list;
 mod block_order;
 mod blocks;
 mod buffers;

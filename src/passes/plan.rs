@@ -1,5 +1,6 @@
 //! A frame's plan, made on the CPU before anything is recorded: which stages run, and the frame's constants.
 
+use crate::passes::block_list::shortlist_from;
 use crate::passes::depth_keys::DepthKeys;
 use crate::passes::laws::Laws;
 use crate::passes::layers::{self, Layers};
@@ -267,7 +268,8 @@ impl Plan {
 
     /// True when the blocks have shortlists of the surfaces that may cut them.
     pub(crate) fn is_shortlisted(&self) -> bool {
-        self.mode() != types::MODE_NONE && self.layers.most_surfaces() >= limits::SHORTLIST_FROM
+        let from = shortlist_from(self.way.shape);
+        self.mode() != types::MODE_NONE && self.layers.most_surfaces() >= from
     }
 
     /// Which of the two pairs of key and order buffers holds the sorted ones: each pass carries them to the other pair.

@@ -1,10 +1,12 @@
 //! The most that frames will ask for, so that room for them is made before the first one.
 
 use super::pair_room;
+use crate::passes::block_list::shortlist_from;
 use rara_base::counted::counted;
 use rara_base::error::{Error, Result};
 use rara_base::limits;
 use rara_base::setters;
+use rara_gpu::DeviceShape;
 use rara_scene::camera::Camera;
 use rara_scene::clip::{Clip, ClipOp, Plane, Quadric, Surface};
 use rara_scene::precision::ShFormat;
@@ -99,10 +101,11 @@ impl FrameLimits {
 
     /// A clip of each kind that pipelines and buffers tell apart: none, and lists of planes and combinations of one surface,
     /// of several, and of so many that blocks have shortlists of them.
-    pub(super) fn clips(&self) -> Result<Vec<Clip>> {
+    pub(super) fn clips(&self, shape: DeviceShape) -> Result<Vec<Clip>> {
+        let long = shortlist_from(shape);
         let mut clips = vec![Clip::default()];
         let listed = self.planes.min(Clip::MAX_SURFACES as u32);
-        for count in counts([1, 2, limits::SHORTLIST_FROM, listed], listed) {
+        for count in counts([1, 2, long, listed], listed) {
             clips.push(planes(count)?);
         }
         let combined = match self.planes > Clip::MAX_SURFACES as u32 {
@@ -111,10 +114,10 @@ impl FrameLimits {
         };
         // A layer that bends beside one of many planes has its code, and shortlists.
         let most = match self.layers > 1 && combined > 0 {
-            true => combined.max(listed.min(limits::SHORTLIST_FROM)),
+            true => combined.max(listed.min(long)),
             false => combined,
         };
-        for count in counts([1, limits::SHORTLIST_FROM, most, most], most) {
+        for count in counts([1, long, most, most], most) {
             clips.push(spheres(count)?);
         }
         Ok(clips)
@@ -158,16 +161,16 @@ mod tests {
     fn each_kind_of_clip_comes_once() {
         let limits = FrameLimits::new((64, 64), 1);
         let sizes = |limits: &FrameLimits| -> Vec<(usize, bool)> {
-            let clips = limits.clips().expect("proper surfaces");
+            let clips = limits.clips(DeviceShape::Cpu).expect("proper surfaces");
             let kind = |clip: &Clip| (clip.all_surfaces().len(), clip.is_general());
             clips.iter().map(kind).collect()
         };
-        let few = [(0, false), (1, false), (2, false), (6, false)];
+        let few = [(0, false), (1, false), (2, false), (3, false), (6, false)];
         assert_eq!(sizes(&limits), few);
         let none = limits.clone().planes(0);
         assert_eq!(sizes(&none), [(0, false)]);
         let bent = limits.clone().planes(0).surfaces(20);
-        let kinds = [(0, false), (1, true), (9, true), (20, true)];
+        let kinds = [(0, false), (1, true), (3, true), (20, true)];
         assert_eq!(sizes(&bent), kinds);
         let many = limits.planes(40);
         assert_eq!(

@@ -142,7 +142,7 @@ impl Renderer {
         let nothing = Gaussians::default();
         let layer = SceneLayer::new(&Layer::new("", &nothing), 0);
         let layers = [layer.clone(), layer];
-        let clips = limits.clips()?;
+        let clips = limits.clips(self.device.shape())?;
         for settings in &limits.settings {
             for size in pictures(limits.size) {
                 for clip in &clips {

@@ -102,8 +102,11 @@ struct ColumnSight {
     vec3 det;
 };
 
-// `delta` and `pixel_centre` are those of the column's middle.
+// `delta` and `pixel_centre` are those of the first row.
 ColumnSight column_sight(Record record, vec2 delta, vec2 pixel_centre) {
+    vec2 middle = vec2(0.0, 0.5 * float(ROWS - 1u));
+    delta += middle;
+    pixel_centre += middle;
     ColumnSight column;
     Sight s = sight_through(RECORD_AT(record, 0), RECORD_AT(record, 1), RECORD_AT(record, 2), pixel_centre - principal_point(), delta);
     column.s = s;
@@ -141,8 +144,7 @@ void beam_zs(ColumnSight column, vec4 half_space, out float z[ROWS]) {
 // `exact` with the camera outside the splat: exact_weight of glsl/weight.glsl. `delta` and `pixel_centre` are the first
 // row's.
 bool exact_weights(Record record, uint flags, vec2 delta, vec2 pixel_centre, float alpha[ROWS], out float weight[ROWS]) {
-    vec2 middle = vec2(0.0, 0.5 * float(ROWS - 1u));
-    ColumnSight column = column_sight(record, delta + middle, pixel_centre + middle);
+    ColumnSight column = column_sight(record, delta, pixel_centre);
     float z[ROWS];
     uint count = flags >> CUT_COUNT_SHIFT;
     if (!SEVERAL || count == 1u) {
@@ -197,8 +199,7 @@ bool exact_weights(Record record, uint flags, vec2 delta, vec2 pixel_centre, flo
 // row's.
 void front_weights(Record record, uint flags, vec2 delta, vec2 pixel_centre, out float weight[ROWS]) {
     uint count = flags >> CUT_COUNT_SHIFT;
-    vec2 middle = vec2(0.0, 0.5 * float(ROWS - 1u));
-    ColumnSight column = column_sight(record, delta + middle, pixel_centre + middle);
+    ColumnSight column = column_sight(record, delta, pixel_centre);
     float front[ROWS];
     beam_zs(column, plane_of(record_base(record), count), front);
     float far[ROWS];
@@ -228,8 +229,7 @@ void front_weights(Record record, uint flags, vec2 delta, vec2 pixel_centre, out
 // row's.
 void chord_weights(Record record, uint flags, vec2 delta, vec2 pixel_centre, out float weight[ROWS]) {
     uint count = flags >> CUT_COUNT_SHIFT;
-    vec2 middle = vec2(0.0, 0.5 * float(ROWS - 1u));
-    ColumnSight column = column_sight(record, delta + middle, pixel_centre + middle);
+    ColumnSight column = column_sight(record, delta, pixel_centre);
     Sight s = column.s;
     vec3 c_step = column.c_step;
     // |offset|^2 / |c|^2 is the square of the line's distance from the centre, offset x c / |c|^2 its nearest point.
@@ -278,9 +278,16 @@ void chord_weights(Record record, uint flags, vec2 delta, vec2 pixel_centre, out
     }
 }
 
-// The weights of a combined record. Where one or two surfaces cut the tile, all its pixels have them at hand.
-void combined_weights(Record record, uint flags, vec2 delta, vec2 pixel_centre, float alpha[ROWS], out float weight[ROWS]) {
+// The weights of a combined record; false when all are whole. Where one or two surfaces cut the tile, all its pixels have them at
+// hand.
+bool combined_weights(Record record, uint flags, vec2 delta, vec2 pixel_centre, float alpha[ROWS], out float weight[ROWS]) {
     TileSurfaces surfaces = record_surfaces(record);
+    if (surfaces.answers == FIRST_KEEPS && is_plane(surfaces.first)) {
+        float z[ROWS];
+        beam_zs(column_sight(record, delta, pixel_centre), surfaces.first.half_space, z);
+        return shares(z, alpha, weight);
+    }
+    bool open = false;
     uint rows = 0u;
     for (uint row = 0u; row < ROWS; row++) {
         weight[row] = 1.0;
@@ -295,10 +302,12 @@ void combined_weights(Record record, uint flags, vec2 delta, vec2 pixel_centre, 
         if (surfaces.answers == 0u || !share_of_tile_surfaces(line_through(s), surfaces, share)) {
             share = combined_weight(s, record_base(record), flags, record_sides(record), push.params.sigma);
         }
+        open = open || share < 1.0;
         for (uint row = 0u; row < ROWS; row++) {
             weight[row] = row == at ? share : weight[row];
         }
     }
+    return open;
 }
 
 // The weight of each pixel of a column; false when all are whole. `delta`, `uv` and `pixel_centre` are the first row's;
@@ -307,7 +316,7 @@ bool cut_weights(Record record, vec2 delta, vec2 uv, float v_step, vec2 pixel_ce
                  out float weight[ROWS]) {
     uint flags = record_flags(record);
     if (COMBINED && (flags & CUT_COMBINED) != 0u) {
-        combined_weights(record, flags, delta, pixel_centre, alpha, weight);
+        return combined_weights(record, flags, delta, pixel_centre, alpha, weight);
     } else if (COMBINED && CLIP_MODE == MODE_EXACT && (flags & CUT_TERMS) != 0u) {
         terms_weights(record, uv.x, uv.y, v_step, weight);
     } else if (CLIP_MODE == MODE_EXACT && (flags & CUT_CURVE) != 0u) {

@@ -9,6 +9,10 @@ struct UnitSurface {
     vec3 across; // Q: xy, xz, yz
 };
 
+bool is_plane(UnitSurface s) {
+    return s.diagonal == vec3(0.0) && s.across == vec3(0.0);
+}
+
 vec3 bent(UnitSurface s, vec3 v) {
     return s.diagonal * v + vec3(dot(s.across.xy, v.yz), dot(s.across.xz, v.xz), dot(s.across.yz, v.xy));
 }

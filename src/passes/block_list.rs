@@ -55,7 +55,7 @@ pub(crate) fn record(
 
 /// The workgroups of a list of blocks: a single one on CPU drivers, whose invocations have many blocks each, and an invocation
 /// a block on GPUs.
-pub(crate) fn groups_of_list(plan: &Plan) -> Groups {
+pub(super) fn groups_of_list(plan: &Plan) -> Groups {
     let blocks = plan.data.scene.block_count;
     Groups::Count(match plan.way.shape {
         DeviceShape::Cpu => 1,
@@ -72,7 +72,7 @@ pub(crate) fn list_invocations(plan: &Plan) -> u32 {
 }
 
 /// An invocation a block.
-pub(crate) fn groups_of_blocks(plan: &Plan) -> Groups {
+pub(super) fn groups_of_blocks(plan: &Plan) -> Groups {
     let blocks = plan.data.scene.block_count;
     Groups::Count(blocks.div_ceil(limits::BLOCK_GROUP_SIZE))
 }

@@ -1,8 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // One workgroup a block that neither view nor clip settles as a whole. It culls by footprint, opacity and size, and finds
-// the side of what is in view. It writes two bits a Gaussian (survives, is cut) and the
-// block's totals; compact turns them into ordered lists.
+// the side of what is in view. It writes two bits a Gaussian (survives, is cut) and the block's totals; compact turns them
+// into ordered lists.
 #include "band.glsl"
 #define SETS 3u // visible, cut, invisible
 #include "side_masks.glsl"

@@ -18,14 +18,6 @@ memory! {
     };
 }
 
-/// The surfaces of a region from which blocks have shortlists.
-pub(crate) fn shortlist_from(shape: DeviceShape) -> u32 {
-    match shape {
-        DeviceShape::Cpu => limits::SHORTLIST_FROM_ON_CPU,
-        DeviceShape::Gpu { .. } => limits::SHORTLIST_FROM,
-    }
-}
-
 /// Bytes of the two masks of a block, a bit a Gaussian in each.
 pub(super) const MASK_BYTES: u64 = 2 * limits::BLOCK_SIZE as u64 / 8;
 
@@ -55,7 +47,7 @@ pub(crate) fn record(
 
 /// The workgroups of a list of blocks: a single one on CPU drivers, whose invocations have many blocks each, and an invocation
 /// a block on GPUs.
-pub(super) fn groups_of_list(plan: &Plan) -> Groups {
+pub(crate) fn groups_of_list(plan: &Plan) -> Groups {
     let blocks = plan.data.scene.block_count;
     Groups::Count(match plan.way.shape {
         DeviceShape::Cpu => 1,
@@ -72,7 +64,7 @@ pub(crate) fn list_invocations(plan: &Plan) -> u32 {
 }
 
 /// An invocation a block.
-pub(super) fn groups_of_blocks(plan: &Plan) -> Groups {
+pub(crate) fn groups_of_blocks(plan: &Plan) -> Groups {
     let blocks = plan.data.scene.block_count;
     Groups::Count(blocks.div_ceil(limits::BLOCK_GROUP_SIZE))
 }

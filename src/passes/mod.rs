@@ -1,7 +1,7 @@
 //! The stages of the frame, one file each: buffers in, buffers out. [`frame`] lists them in order.
 
 mod bin;
-pub(crate) mod block_list;
+mod block_list;
 mod block_order;
 mod blocks;
 mod buffers;
@@ -56,6 +56,7 @@ pub(crate) use pipelines::Pipelines;
 pub(crate) use plan::{Plan, SceneFacts};
 pub(crate) use previous_frame::PreviousFrame;
 pub(crate) use recording::Resources;
+pub(crate) use region::shortlist_from;
 pub use scene_buffers::{SceneBuffers, Staging};
 pub use scene_layer::SceneLayer;
 pub(crate) use sizes::Sizes;

@@ -1,11 +1,10 @@
 //! A frame's plan, made on the CPU before anything is recorded: which stages run, and the frame's constants.
 
-use crate::passes::block_list::shortlist_from;
 use crate::passes::depth_keys::DepthKeys;
 use crate::passes::laws::Laws;
 use crate::passes::layers::{self, Layers};
 use crate::passes::occluders::Occluders;
-use crate::passes::region::region_data;
+use crate::passes::region::{region_data, shortlist_from};
 use crate::passes::scene_layer::SceneLayer;
 use crate::passes::splat_colours::SplatColours;
 use crate::passes::tile_picture::TilePixels;

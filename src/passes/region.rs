@@ -5,6 +5,8 @@ use glam::DVec3;
 
 use crate::types::{self, RegionData};
 use rara_base::error::Result;
+use rara_base::limits;
+use rara_gpu::DeviceShape;
 use rara_scene::clip::postfix::postfix;
 use rara_scene::clip::{Clip, ClipOp, Plane, Quadric, Surface};
 use rara_scene::settings::{Mode, Settings};
@@ -12,6 +14,14 @@ use rara_scene::settings::{Mode, Settings};
 /// The largest distance of a surface that is not taken for infinity, in the layer's units. It lies beyond every splat: a power of two
 /// below the end of single precision's range.
 const FARTHEST: f64 = (1_u128 << 126) as f64;
+
+/// The surfaces of a region from which blocks have shortlists.
+pub(crate) fn shortlist_from(shape: DeviceShape) -> u32 {
+    match shape {
+        DeviceShape::Cpu => limits::SHORTLIST_FROM_ON_CPU,
+        DeviceShape::Gpu { .. } => limits::SHORTLIST_FROM,
+    }
+}
 
 /// The values that are common to all regions that these clips make in the mode of the settings. Without anything to clip
 /// with, they are the same as in mode `none`.

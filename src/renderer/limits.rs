@@ -1,7 +1,7 @@
 //! The most that frames will ask for, so that room for them is made before the first one.
 
 use super::pair_room;
-use crate::passes::block_list::shortlist_from;
+use crate::passes::shortlist_from;
 use rara_base::counted::counted;
 use rara_base::error::{Error, Result};
 use rara_base::limits;

@@ -20,7 +20,7 @@ bool is_cut_by_several(uint splat) {
     if (!(linear.x < -Z_RANGE)) {
         return false; // whole, or one surface that the splat carries
     }
-    uint flags = to_uint(cut_records.at[record_number(linear) * FRAME.weight.cut_stride].w);
+    uint flags = to_uint(cut_records.at[record_number(linear.x) * FRAME.weight.cut_stride].w);
     return flags >> CUT_COUNT_SHIFT != 1u || (flags & CUT_COMBINED) != 0u; // none, where two stages disagree by rounding, is weighed as several are
 }
 

@@ -30,15 +30,6 @@ vec3 cut_away_line(vec3 linear, vec3 curvature, vec2 box) {
     return line;
 }
 
-// The same for a record that is a curve (cut.glsl), whose coordinates are nowhere beyond the splat's extent.
-vec3 cut_away_line_of_curve(vec4 linear, vec4 bend, vec4 twist, vec4 wave, vec3 conic, float extent) {
-    float square = extent * extent;
-    precise float rise = square * (max(bend.x, 0.0) + abs(bend.y) + max(bend.z, 0.0)
-        + extent * dot(abs(twist), vec4(1.0)) + square * (dot(abs(wave), vec4(1.0)) + max(bend.w, 0.0)));
-    precise vec3 line = vec3(linear.x + TRIM_DEVIATIONS + rise, linear.y * conic.x + linear.z * conic.y, linear.z * conic.z);
-    return line;
-}
-
 // First and last (exclusive) tile with a pixel centre in [low, high].
 uvec2 tiles_between(float low, float high, float pixels, uint side) {
     float first = max(ceil(low - 0.5), 0.0);
@@ -64,6 +55,9 @@ Outline contour(Splat splat) {
     vec3 linear = vec3(splat.conic_cut.zw, splat.colour_cut.w);
     if (abs(linear.x) < Z_RANGE) {
         o.line = cut_away_line(linear, splat.curvature_depth.xyz, vec2(width, o.half_height));
+    } else if (linear.x < -Z_RANGE) {
+        OpenStrip strip = open_strip_of(linear, splat.curvature_depth.xyz);
+        o.line = vec3(strip.away, strip.slope);
     }
     return o;
 }

@@ -17,20 +17,13 @@ Carried carried_weight(uint cut) {
             weight.linear = cut_records.at[base + CUT_HEADER].xyz;
             weight.curvature = cut_records.at[base + CUT_HEADER + 1u].xyz;
         } else {
-            weight.linear = vec3(Z_RECORD, float(cut & 0xffffu), float(cut >> 16));
+            bool has_strip = (to_uint(cut_records.at[base].w) & CUT_STRIP) != 0u;
+            vec4 strip = has_strip ? cut_records.at[base + FRAME.weight.cut_stride - 1u] : vec4(0.0, 0.0, 1.0, -1.0);
+            weight.linear = vec3(uintBitsToFloat(Z_RECORD + cut), strip.xy);
+            weight.curvature = vec3(strip.zw, 0.0);
         }
     }
     return weight;
-}
-
-// The line beyond which a splat is cut away: by its curve where a record holds one, else the given line.
-vec3 cut_away_line_of_record(vec3 line, uint cut, Carried weight, vec3 conic, float extent) {
-    uint base = cut * FRAME.weight.cut_stride;
-    vec4 linear = cut_records.at[base];
-    if (weight.linear.x >= -Z_RANGE || (to_uint(linear.w) & CUT_CURVE) == 0u) {
-        return line;
-    }
-    return cut_away_line_of_curve(linear, cut_records.at[base + 1u], cut_records.at[base + 2u], cut_records.at[base + CUT_HEADER], conic, 1.001 * extent);
 }
 
 #endif

@@ -8,7 +8,7 @@
 #include "region/crossing.glsl"
 #include "region/term_curves.glsl"
 
-// True where records may hold the terms of a surface.
+// True where records may hold the terms of a surface, and strips are found from samples: both fill a GPU's registers.
 layout(constant_id = 0) const bool HAS_TERMS = false;
 // Largest error of alpha times weight that a fit may have: a twenty-fifth of a level of 8 bits.
 const float CURVE_TOLERANCE = 1.5e-4;
@@ -103,7 +103,7 @@ CurveSamples first_samples(CurveSource source, float extent) {
     z.centre = centre.z;
     z.is_one = centre.is_one;
     z.centre_terms = centre.terms;
-    z.has_terms = centre.has_terms;
+    z.has_terms = HAS_TERMS && centre.has_terms;
     sample_rings(source, 0u, first_rings(source), extent, z);
     return z;
 }
@@ -263,6 +263,56 @@ bool is_good(TermCurves fit, CurveSamples samples, float opacity, float extent) 
         }
     }
     return good;
+}
+
+// The strip in which a curve is open: what its terms beyond the first add and take is bounded by their sizes on the splat's contour.
+OpenStrip open_strip(Curve c, float extent) {
+    float square = extent * extent;
+    float rest = square * extent * (dot(abs(c.twist), vec4(1.0)) + extent * dot(abs(c.wave), vec4(1.0)));
+    vec3 bend = square * c.bend;
+    float ripple = square * square * c.ripple;
+    float above = max(bend.x, 0.0) + abs(bend.y) + max(bend.z, 0.0) + rest + max(ripple, 0.0);
+    float below = max(-bend.x, 0.0) + abs(bend.y) + max(-bend.z, 0.0) + rest + max(-ripple, 0.0);
+    return OpenStrip(c.slope, c.at + TRIM_DEVIATIONS + above, c.at - TRIM_DEVIATIONS - below);
+}
+
+// How far the next sample is from one, at most, in deviations.
+const float SAMPLES_APART = 1.2;
+
+// The same from samples and a polynomial whose first terms are near them. What these leave is bounded by the samples near either end
+// of the strip, with a fifth and a little more for what lies between them, so that the strip is narrower.
+OpenStrip open_strip(Curve curve, CurveSamples z, uint rings, float extent) {
+    float step_most = SAMPLES_APART * length(curve.slope);
+    vec2 most = vec2(-1e20); // by how much z is above the first terms at the end that is away, and below them at the other
+    float spread = 0.0;
+    for (uint ring = 0u; ring < rings; ring++) {
+        for (uint step = 0u; step < CURVE_STEPS; step++) {
+            float here = z.at[ring * CURVE_STEPS + step];
+            float plain = curve.at + dot(curve.slope, curve_radius(ring, extent) * curve_direction(ring, step));
+            float rest = here - plain;
+            vec2 beyond = vec2(here + TRIM_DEVIATIONS, TRIM_DEVIATIONS - here); // the ends, where positive
+            bvec2 near = lessThan(abs(beyond), vec2(2.0 + step_most));
+            spread = any(near) ? max(spread, abs(rest)) : spread;
+            most.x = max(most.x, near.x ? rest : beyond.x > 0.0 ? step_most - TRIM_DEVIATIONS - plain : -1e20);
+            most.y = max(most.y, near.y ? -rest : beyond.y > 0.0 ? step_most - TRIM_DEVIATIONS + plain : -1e20);
+        }
+    }
+    most += 0.2 * spread + 0.05;
+    bool is_known = z.is_one || z.has_terms;
+    return OpenStrip(curve.slope, is_known ? curve.at + TRIM_DEVIATIONS + most.x : 1e20, is_known ? curve.at - TRIM_DEVIATIONS - most.y : -1e20);
+}
+
+// That of two surfaces of which one or both have to keep a point: it is away where one is, or whole. Of the two lines for that
+// it has the one that leaves less.
+OpenStrip joined(OpenStrip one, OpenStrip other, bool is_or) {
+    float one_length = length(one.slope);
+    float other_length = length(other.slope);
+    if (is_or) {
+        bool first = one.whole * other_length > other.whole * one_length;
+        return OpenStrip(first ? one.slope : other.slope, 1e20, first ? one.whole : other.whole);
+    }
+    bool first = one.away * other_length < other.away * one_length;
+    return OpenStrip(first ? one.slope : other.slope, first ? one.away : other.away, -1e20);
 }
 
 // A curve of degree two as a function of the pixel, which is how the rasteriser carries it.

@@ -17,6 +17,7 @@
 // along u, and 7 holds that along v, and its factors of u^2, u v and v^2.
 #ifndef RARA_CUT
 #define RARA_CUT
+#include "limits.glsl"
 
 const uint CUT_HEADER = 3u;
 // The planes are evaluated on each pixel's line of sight.
@@ -32,15 +33,16 @@ const uint CUT_TERMS = 32u;
 const uint CUT_UNION = 8u;
 // The surfaces may bend, and combine by their operators.
 const uint CUT_COMBINED = 16u;
+// The record's last vec4 is an OpenStrip.
+const uint CUT_STRIP = 64u;
 const uint CUT_COUNT_SHIFT = 8u;
 
 // The rasteriser carries z at a splat's centre, dz/dx, dz/dy and the curvature, so that the usual case, one plane, needs
-// no record in the fragment stage. Beyond Z_RANGE, z says that the splat is whole; below -Z_RANGE that
-// the slopes hold the lower and upper 16 bits of its record's number, as numbers: the bits of a small integer are those
-// of a denormal float, which a rasteriser may flush.
+// no record in the fragment stage. Beyond Z_RANGE, z says that the splat is whole; below -Z_RANGE its bits are Z_RECORD
+// plus the number of the splat's record, and slopes and curvature hold an OpenStrip.
 const float Z_RANGE = 1e30;
 const float Z_WHOLE = 2e30;
-const float Z_RECORD = -2e30;
+const uint Z_RECORD = 0xff800000u - MAX_RECORDS; // up to minus infinity
 // In a reclipped frame the splats are all that is in view; this z says that a splat is clipped away.
 const float Z_CUT_AWAY = 4e30;
 
@@ -58,9 +60,21 @@ uint to_uint(float number) {
     return uint(int(number));
 }
 
-// The number of the record that a splat's carried slopes name.
-uint record_number(vec3 linear) {
-    return to_uint(linear.y) | to_uint(linear.z) << 16;
+// The number of the record that a carried z names.
+uint record_number(float z) {
+    return floatBitsToUint(z) - Z_RECORD;
+}
+
+// The strip of the picture in which the weight of a splat with a record is open: with d from the splat's centre, px, nothing is left
+// of the splat where away + slope . d is negative, and all where whole + slope . d is positive.
+struct OpenStrip {
+    vec2 slope;
+    float away, whole;
+};
+
+// The strip as slopes and curvature hold it.
+OpenStrip open_strip_of(vec3 linear, vec3 curvature) {
+    return OpenStrip(linear.yz, curvature.x, curvature.y);
 }
 
 #endif

@@ -51,7 +51,7 @@ void write_carried(uint base, vec3 linear, vec3 curvature) {
 
 // Writes what the weight of one surface follows from.
 void write_terms(uint base, TermCurves t) {
-    cut_records.at[base] = vec4(t.value.at, t.value.slope, float(1u << CUT_COUNT_SHIFT | CUT_TERMS));
+    cut_records.at[base] = vec4(t.value.at, t.value.slope, float(1u << CUT_COUNT_SHIFT | CUT_TERMS | CUT_STRIP));
     cut_records.at[base + 1u] = vec4(t.value.bend, t.value.ripple);
     cut_records.at[base + 2u] = t.value.twist;
     cut_records.at[base + 3u] = t.value.wave;
@@ -61,8 +61,14 @@ void write_terms(uint base, TermCurves t) {
     cut_records.at[base + 7u] = vec4(t.bend.slope.y, t.bend.bend);
 }
 
-// Writes the weight of one surface as a polynomial, if one is as good as the exact form.
-bool write_curve(uint base, CurveSource source, float opacity) {
+void write_strip(uint base, OpenStrip strip, vec3 conic) {
+    vec2 slope = strip.slope.x * vec2(conic.x, 0.0) + strip.slope.y * conic.yz;
+    cut_records.at[base + FRAME.weight.cut_stride - 1u] = vec4(slope, strip.away, strip.whole);
+}
+
+// Writes the weight of one surface as a polynomial, if one is as good as the exact form. Else `strip` is where it is open, on CPU
+// drivers.
+bool write_curve(uint base, CurveSource source, float opacity, out OpenStrip strip) {
     float extent = opacity_extent(opacity);
     CurveSamples samples = first_samples(source, extent);
     Curve square;
@@ -81,20 +87,35 @@ bool write_curve(uint base, CurveSource source, float opacity) {
         return true;
     }
     if (is_good(quartic, samples, opacity, extent)) {
-        cut_records.at[base] = vec4(quartic.at, quartic.slope, float(1u << CUT_COUNT_SHIFT | CUT_CURVE));
+        cut_records.at[base] = vec4(quartic.at, quartic.slope, float(1u << CUT_COUNT_SHIFT | CUT_CURVE | CUT_STRIP));
         cut_records.at[base + 1u] = vec4(quartic.bend, quartic.ripple);
         cut_records.at[base + 2u] = quartic.twist;
         cut_records.at[base + CUT_HEADER] = quartic.wave;
+        write_strip(base, open_strip(quartic, 1.001 * extent), source.conic);
         return true;
+    }
+    if (HAS_TERMS) {
+        strip = open_strip(square, samples, CURVE_RINGS, extent);
     }
     if (HAS_TERMS && COMBINED && source.bends) {
         TermCurves fit = fitted_terms(samples);
         if (is_good(fit, samples, opacity, extent)) {
             write_terms(base, fit);
+            write_strip(base, strip, source.conic);
             return true;
         }
     }
     return false;
+}
+
+// Where one of several surfaces is open.
+OpenStrip strip_of_surface(CurveSource source, float extent) {
+    CurveSamples samples = first_samples(source, extent);
+    Curve square;
+    Curve cubic;
+    Curve quartic;
+    fitted(samples.centre, samples.at, square, cubic, quartic);
+    return open_strip(square, samples, first_rings(source), extent);
 }
 
 // A splat of which all or nothing is kept.
@@ -126,19 +147,6 @@ bool are_planes(uint base, uint entries, out bool is_union) {
         has_and = has_and || ors < count;
     }
     return !bends && !(has_and && is_union);
-}
-
-// The footprint's own gradients, which are the same in all pixels.
-CurveSource source_of_footprint(Footprint f) {
-    CurveSource source;
-    source.h0 = vec4(f.b1, 0.0);
-    source.h1 = vec4(f.b2, f.scale);
-    source.h2 = vec4(vec3(0.0), f.low_pass);
-    source.half_space = vec4(0.0);
-    source.bends = true;
-    source.centre = f.screen_centre - VIEW.focal.zw;
-    source.conic = conic_of(f);
-    return source;
 }
 
 void main() {
@@ -208,56 +216,67 @@ void main() {
         cut_records.at[at] = vec4(0.0);
         return;
     }
-    if (COMBINED && is_combined && !beam && count == 1u && FRAME.weight.form == FORM_AUTO) {
-        UnitSurface surface = entry_of(base, 0u);
-        CurveSource source = source_of_footprint(f);
-        source.surface = surface;
-        vec3 linear;
-        vec3 curvature;
-        Sight sight = sight_through(source.h0, source.h1, source.h2, vec2(0.0), vec2(0.0));
-        if (carried_bend(sight, surface, f.scale, linear, curvature)) {
-            write_carried(base, linear, curvature);
-            return;
-        }
-        if (write_curve(base, source, opacity_on_screen(f, gaussian))) {
-            return;
-        }
-    }
-    if (!beam) {
-        // Several planes take the footprint's own gradients, which are the same in all pixels.
-        cut_records.at[base] = vec4(f.b1, float(flags | CUT_BEAM));
-        cut_records.at[base + 1u] = vec4(f.b2, f.scale);
-        cut_records.at[base + 2u] = vec4(vec3(0.0), f.low_pass);
-        return;
-    }
-
-    // The weight follows true rays. The gradients at a pixel are these less the pixel's position times `lean`.
-    vec2 magnification = quotient(VIEW.focal.xy, f.w);
-    vec3 b1 = magnification.x * f.m1;
-    vec3 b2 = magnification.y * f.m2;
-    vec3 lean = quotient(f.w_gradient, f.w);
-    // They grow with the distance from the principal point, so the scale is the farthest pixel's.
-    vec2 far = max(abs(VIEW.focal.zw), abs(VIEW.size.xy - VIEW.focal.zw));
-    float size = max(largest(b1) + far.x * largest(lean), largest(b2) + far.y * largest(lean));
-    // Mode `rara` has no low-pass to keep in proportion, so it also scales up what is tiny.
-    float scale = 1.0 / max(size, FRAME.region.mode == MODE_RARA ? 1e-30 : 1.0);
+    // The footprint's own gradients are the same in all pixels.
     CurveSource source;
-    source.h0 = vec4(b1 * scale, 0.0);
-    source.h1 = vec4(b2 * scale, scale);
-    source.h2 = vec4(lean * scale, LAYER.content.low_pass * scale * scale);
+    source.h0 = vec4(f.b1, 0.0);
+    source.h1 = vec4(f.b2, f.scale);
+    source.h2 = vec4(vec3(0.0), f.low_pass);
+    source.half_space = half_space;
+    source.bends = is_combined;
+    source.centre = f.screen_centre - VIEW.focal.zw;
+    source.conic = conic_of(f);
+    if (beam) {
+        // The weight follows true rays. The gradients at a pixel are these less the pixel's position times `lean`.
+        vec2 magnification = quotient(VIEW.focal.xy, f.w);
+        vec3 b1 = magnification.x * f.m1;
+        vec3 b2 = magnification.y * f.m2;
+        vec3 lean = quotient(f.w_gradient, f.w);
+        // They grow with the distance from the principal point, so the scale is the farthest pixel's.
+        vec2 far = max(abs(VIEW.focal.zw), abs(VIEW.size.xy - VIEW.focal.zw));
+        float size = max(largest(b1) + far.x * largest(lean), largest(b2) + far.y * largest(lean));
+        // Mode `rara` has no low-pass to keep in proportion, so it also scales up what is tiny.
+        float scale = 1.0 / max(size, FRAME.region.mode == MODE_RARA ? 1e-30 : 1.0);
+        source.h0 = vec4(b1 * scale, 0.0);
+        source.h1 = vec4(b2 * scale, scale);
+        source.h2 = vec4(lean * scale, LAYER.content.low_pass * scale * scale);
+    }
 
     // A switch of zero asks for the exact form itself.
-    if (FRAME.region.mode == MODE_EXACT && FRAME.weight.form == FORM_AUTO && FRAME.weight.beam_switch > 0.0 && count == 1u && !front) {
-        source.half_space = half_space;
-        source.bends = is_combined;
+    bool is_fitted = FRAME.region.mode == MODE_EXACT && FRAME.weight.form == FORM_AUTO && !front
+        && (beam ? FRAME.weight.beam_switch > 0.0 : is_combined);
+    float opacity = opacity_on_screen(f, gaussian);
+    OpenStrip strip;
+    bool has_strip = false;
+    if (is_fitted && count == 1u) {
         if (COMBINED && is_combined) {
             source.surface = entry_of(base, 0u);
+            vec3 linear;
+            vec3 curvature;
+            Sight sight = sight_through(source.h0, source.h1, source.h2, vec2(0.0), vec2(0.0));
+            if (!beam && carried_bend(sight, source.surface, f.scale, linear, curvature)) {
+                write_carried(base, linear, curvature);
+                return;
+            }
         }
-        source.centre = f.screen_centre - VIEW.focal.zw;
-        source.conic = conic_of(f);
-        if (write_curve(base, source, opacity_on_screen(f, gaussian))) {
+        if (write_curve(base, source, opacity, strip)) {
             return;
         }
+        has_strip = HAS_TERMS;
+    } else if (HAS_TERMS && COMBINED && is_combined && is_fitted && count == 2u) {
+        for (uint i = 0u; i < count; i++) {
+            source.surface = entry_of(base, i);
+            OpenStrip one = strip_of_surface(source, opacity_extent(opacity));
+            if (i == 0u) {
+                strip = one;
+            } else {
+                strip = joined(strip, one, is_or(operators_of(base, i), 0u));
+            }
+        }
+        has_strip = true;
+    }
+    if (has_strip) {
+        write_strip(base, strip, source.conic);
+        flags |= CUT_STRIP;
     }
     if (front) {
         flags |= CUT_FRONT;

@@ -55,6 +55,8 @@ const uint TIES_ALONE = 24u;
 // Surfaces that a splat is weighed by where regions have parts or bend, those that cut it nearest its centre. Of the others
 // it is on the side of its centre. A region that is a flat list of planes has no such limit.
 const uint MAX_CUTTING = 8u;
+// Cutoff records that splats can name: as many bit patterns of floats are below -2.5e30.
+const uint MAX_RECORDS = 54 << 22;
 // Surfaces of a region from which its blocks have shortlists on GPUs: the surfaces that may cut a Gaussian of the block.
 const uint SHORTLIST_FROM = 9u;
 // The same on CPU drivers, on which a shortlist takes no registers from other work.

@@ -123,16 +123,13 @@ void project(uint splat_index, uint index, float x, uint first) {
     if (!splats_lie_apart()) {
         SPLAT_CURVATURE(splat_index) = splat.curvature_depth;
     } else {
-        if (CUT && abs(weight.linear.x) < Z_RANGE) {
+        if (CUT && weight.linear.x < Z_RANGE) {
             SPLAT_CURVATURE(splat_index) = splat.curvature_depth;
         }
         SPLAT_DEPTH(splat_index) = splat.curvature_depth.w;
     }
     if (TILES) {
         Outline o = outline(splat, quad);
-        if (CUT && cut != NOT_CUT) {
-            o.line = cut_away_line_of_record(o.line, cut, weight, conic, extent);
-        }
         uvec4 tiles = tile_mask(o);
         uint word = rect_word(tiles);
         if (RECTS) {

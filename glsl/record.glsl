@@ -24,7 +24,7 @@ Record record_of(vec3 linear) {
     record.sides = all_cutting();
     record.surfaces.answers = 0u;
     if (linear.x < -Z_RANGE) {
-        record.base = record_number(linear) * push.params.cut_stride;
+        record.base = record_number(linear.x) * push.params.cut_stride;
         for (uint i = 0u; i <= CUT_HEADER; i++) {
             record.begin[i] = cut_records.at[record.base + i];
         }
@@ -46,7 +46,7 @@ struct Record {
 #define RECORD_AT(record, i) cut_records.at[record_base(record) + i]
 
 uint record_base(Record record) {
-    return record_number(record.linear) * push.params.cut_stride;
+    return record_number(record.linear.x) * push.params.cut_stride;
 }
 
 Record record_of(vec3 linear) {

@@ -21,7 +21,7 @@ float splat_alpha(vec4 centre_conic, vec4 conic_cut, float slope, vec3 curvature
                 + delta.y * (linear.z + curvature.z * delta.y);
             weight = phi(z);
         } else {
-            weight = cut_weight(record_number(linear), delta, vec2(u, v), gl_FragCoord.xy);
+            weight = cut_weight(record_number(linear.x), delta, vec2(u, v), gl_FragCoord.xy);
         }
         alpha = decayed(alpha, weight);
     }

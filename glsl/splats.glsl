@@ -1,6 +1,6 @@
 // How splats lie in the buffer `splats`, which whoever includes this declares as vec4s. For CPU drivers each is 64 bytes, a cache
 // line. Pipelines for GPUs have the 48 bytes of all splats that every tile reads first, then the curvatures, of which only those
-// that are carried are written and read, and then the depths, four in the place of one.
+// of cut splats are written and read, and then the depths, four in the place of one.
 #ifndef RARA_SPLATS
 #define RARA_SPLATS
 #include "frame.glsl"
@@ -29,7 +29,7 @@ uvec2 depth_place(uint splat) {
 #define SPLAT_CURVATURE(splat) splats.at[curvature_place(splat)]
 #define SPLAT_DEPTH(splat) splats.at[depth_place(splat).x][depth_place(splat).y]
 
-// A splat's curvature; nothing where it is not carried.
-#define CARRIED_CURVATURE(splat, conic_cut) (abs((conic_cut).z) < Z_RANGE ? SPLAT_CURVATURE(splat).xyz : vec3(0.0))
+// A splat's curvature; nothing where it is whole.
+#define CARRIED_CURVATURE(splat, conic_cut) ((conic_cut).z < Z_RANGE ? SPLAT_CURVATURE(splat).xyz : vec3(0.0))
 
 #endif

@@ -155,8 +155,11 @@ Seen load(uint number, float x, vec2 tile_middle, out Record record) {
     splat.colour = colour_cut.rgb;
     splat.linear = vec3(conic_cut.zw, colour_cut.w);
     splat.curvature = vec3(0.0);
-    if (CLIP_MODE == MODE_EXACT && abs(splat.linear.x) < Z_RANGE) {
+    if (CLIP_MODE == MODE_EXACT && splat.linear.x < Z_RANGE) {
         splat.curvature = SPLAT_CURVATURE(number).xyz;
+        if (SHOW != SHOW_WEIGHT && splat.linear.x < -Z_RANGE) {
+            splat.linear.x = z_beyond_strip(splat.linear, splat.curvature, tile_middle - splat.centre_conic.xy);
+        }
     }
     if (CLIP_MODE >= MODE_RARA) {
         record = record_of(splat.linear);

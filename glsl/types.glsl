@@ -155,7 +155,7 @@ struct Splat {
     vec4 centre_conic; // centre, px; k0 k1 of the inverse 2D covariance's Cholesky factor, 1/px
     vec4 conic_cut; // k2; opacity; the weight's z at the centre and dz/dx, as cut.glsl says
     vec4 colour_cut; // colour; dz/dy
-    vec4 curvature_depth; // of the weight's z: the factors of dx^2, dx dy and dy^2; the centre's depth
+    vec4 curvature_depth; // of the weight's z: the factors of dx^2, dx dy and dy^2, or an OpenStrip's (cut.glsl); the centre's depth
 };
 
 // The parallelogram that a splat is drawn with, where quads are drawn, relative to its centre, px: the points middle + s

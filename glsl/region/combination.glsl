@@ -29,10 +29,6 @@ struct TileSurfaces {
 const uint FIRST_KEEPS = 0xau;
 const uint SECOND_KEEPS = 0xcu;
 
-uint operators_of(uint base, uint entry) {
-    return to_uint(cut_records.at[base + CUT_HEADER + ENTRY_VECTORS * entry + 1u].w);
-}
-
 // Gauss and Hermite's nodes and weights for a normal variable: the middle one and three on either side.
 const vec4 BEND_NODE = vec4(0.0, 1.1544054, 2.3667594, 3.7504397);
 const vec4 BEND_WEIGHT = vec4(0.45714286, 0.24012318, 0.030757124, 5.4826886e-4);

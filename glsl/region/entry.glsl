@@ -9,4 +9,8 @@ UnitSurface entry_of(uint base, uint entry) {
     return UnitSurface(cut_records.at[at], cut_records.at[at + 1u].xyz, cut_records.at[at + 2u].xyz);
 }
 
+uint operators_of(uint base, uint entry) {
+    return to_uint(cut_records.at[base + CUT_HEADER + ENTRY_VECTORS * entry + 1u].w);
+}
+
 #endif

@@ -28,6 +28,14 @@ uint carried_side(vec3 linear, vec3 curvature, vec2 delta) {
     return side_between(z - reach, z + reach, TILE_MARGIN * PHI_ONE);
 }
 
+// What a tile takes for the z of a splat with a record: outside its open strip it is whole, or away.
+float z_beyond_strip(vec3 linear, vec3 curvature, vec2 delta) {
+    OpenStrip strip = open_strip_of(linear, curvature);
+    float at = dot(strip.slope, delta);
+    float reach = dot(abs(strip.slope), TILE_REACH);
+    return strip.away + at + reach < 0.0 ? Z_CUT_AWAY : strip.whole + at - reach > 0.0 ? Z_WHOLE : linear.x;
+}
+
 // The least and the greatest of a polynomial in a tile. `uv` are the tile's middle in the splat's own coordinates, and `uv_reach` is
 // how far its pixels' are from those.
 vec2 curve_range(Curve c, vec2 uv, vec2 uv_reach) {

@@ -54,6 +54,8 @@ pub const TIES_ALONE: u32 = 24;
 /// Surfaces that a splat is weighed by where regions have parts or bend, those that cut it nearest its centre. Of the others
 /// it is on the side of its centre. A region that is a flat list of planes has no such limit.
 pub const MAX_CUTTING: u32 = 8;
+/// Cutoff records that splats can name: as many bit patterns of floats are below -2.5e30.
+pub const MAX_RECORDS: u32 = 54 << 22;
 /// Surfaces of a region from which its blocks have shortlists on GPUs: the surfaces that may cut a Gaussian of the block.
 pub const SHORTLIST_FROM: u32 = 9;
 /// The same on CPU drivers, on which a shortlist takes no registers from other work.

@@ -349,12 +349,13 @@ fn weight_data(
     let cut_stride = match cuts(region.mode) {
         false => 0,
         true if layers.are_combined() && scene.shape == DeviceShape::Cpu => {
-            surfaces.max(types::TERMS_VECTORS)
+            surfaces.max(types::TERMS_VECTORS + 1)
         }
         true => surfaces,
     };
     // Shaders count the records' elements in 32 bits.
-    if u64::from(scene.gaussians) * u64::from(cut_stride) > u64::from(u32::MAX) {
+    let has_room = cut_stride == 0 || scene.gaussians <= limits::MAX_RECORDS;
+    if !has_room || u64::from(scene.gaussians) * u64::from(cut_stride) > u64::from(u32::MAX) {
         return Err(Error::Invalid(format!(
             "{} cut by {} are beyond what a frame can address; use fewer or split the scene",
             counted(scene.gaussians, "Gaussian"),

@@ -45,8 +45,8 @@ pub fn splats(buffer: &[[f32; 4]], gaussians: usize, shape: DeviceShape) -> Vec<
             place + 3
         }];
         if apart {
-            // Only curvatures that are carried are there.
-            if conic_cut[2].abs() >= 1e30 {
+            // Only those of cut splats are there.
+            if conic_cut[2] >= 1e30 {
                 curvature_depth = [0.0; 4];
             }
             curvature_depth[3] = buffer[4 * gaussians + splat / 4][splat % 4];

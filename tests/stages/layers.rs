@@ -91,8 +91,7 @@ fn each_layers_splats_and_records_are_those_of_the_layer_alone() {
                     as_alone.curvature_depth[3] *= unit;
                     if splat.conic_cut[2] < -1e30 {
                         // This is the record's number, which counts the layers before.
-                        as_alone.conic_cut[3] = splat.conic_cut[3];
-                        as_alone.colour_cut[3] = splat.colour_cut[3];
+                        as_alone.conic_cut[2] = splat.conic_cut[2];
                     }
                     let bytes = |splat: &Splat| bytemuck::bytes_of(splat).to_vec();
                     assert!(bytes(splat) == bytes(&as_alone), "{splat:?} {as_alone:?}");

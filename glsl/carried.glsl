@@ -17,6 +17,7 @@ Carried carried_weight(uint cut) {
             weight.linear = cut_records.at[base + CUT_HEADER].xyz;
             weight.curvature = cut_records.at[base + CUT_HEADER + 1u].xyz;
         } else {
+            // Without a strip it is open everywhere.
             bool has_strip = (to_uint(cut_records.at[base].w) & CUT_STRIP) != 0u;
             vec4 strip = has_strip ? cut_records.at[base + FRAME.weight.cut_stride - 1u] : vec4(0.0, 0.0, 1.0, -1.0);
             weight.linear = vec3(uintBitsToFloat(Z_RECORD + cut), strip.xy);

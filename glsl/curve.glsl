@@ -265,7 +265,7 @@ bool is_good(TermCurves fit, CurveSamples samples, float opacity, float extent) 
     return good;
 }
 
-// The strip in which a curve is open: what its terms beyond the first add and take is bounded by their sizes on the splat's contour.
+// Bounds the strip in which a curve is open: its terms beyond the first add and take no more than their sizes on the contour.
 OpenStrip open_strip(Curve c, float extent) {
     float square = extent * extent;
     float rest = square * extent * (dot(abs(c.twist), vec4(1.0)) + extent * dot(abs(c.wave), vec4(1.0)));
@@ -279,7 +279,7 @@ OpenStrip open_strip(Curve c, float extent) {
 // How far the next sample is from one, at most, in deviations.
 const float SAMPLES_APART = 1.2;
 
-// The same from samples and a polynomial whose first terms are near them. What these leave is bounded by the samples near either end
+// Does the same from samples and a polynomial whose first terms are near them. What these leave is bounded by the samples near either end
 // of the strip, with a fifth and a little more for what lies between them, so that the strip is narrower.
 OpenStrip open_strip(Curve curve, CurveSamples z, uint rings, float extent) {
     float step_most = SAMPLES_APART * length(curve.slope);
@@ -297,22 +297,17 @@ OpenStrip open_strip(Curve curve, CurveSamples z, uint rings, float extent) {
             most.y = max(most.y, near.y ? -rest : beyond.y > 0.0 ? step_most - TRIM_DEVIATIONS + plain : -1e20);
         }
     }
-    most += 0.2 * spread + 0.05;
-    bool is_known = z.is_one || z.has_terms;
-    return OpenStrip(curve.slope, is_known ? curve.at + TRIM_DEVIATIONS + most.x : 1e20, is_known ? curve.at - TRIM_DEVIATIONS - most.y : -1e20);
+    most = z.is_one || z.has_terms ? most + 0.2 * spread + 0.05 : vec2(1e20);
+    return OpenStrip(curve.slope, curve.at + TRIM_DEVIATIONS + most.x, curve.at - TRIM_DEVIATIONS - most.y);
 }
 
-// That of two surfaces of which one or both have to keep a point: it is away where one is, or whole. Of the two lines for that
-// it has the one that leaves less.
+// Joins the strips of two surfaces. What both have to keep is away where one is away, and what either may keep is whole where one
+// is whole. A strip has room for one of the two lines, and takes the one that leaves less.
 OpenStrip joined(OpenStrip one, OpenStrip other, bool is_or) {
-    float one_length = length(one.slope);
-    float other_length = length(other.slope);
-    if (is_or) {
-        bool first = one.whole * other_length > other.whole * one_length;
-        return OpenStrip(first ? one.slope : other.slope, 1e20, first ? one.whole : other.whole);
-    }
-    bool first = one.away * other_length < other.away * one_length;
-    return OpenStrip(first ? one.slope : other.slope, first ? one.away : other.away, -1e20);
+    vec2 lengths = vec2(length(one.slope), length(other.slope));
+    bool is_first = is_or ? one.whole * lengths.y > other.whole * lengths.x : one.away * lengths.y < other.away * lengths.x;
+    OpenStrip strip = is_first ? one : other;
+    return OpenStrip(strip.slope, is_or ? 1e20 : strip.away, is_or ? strip.whole : -1e20);
 }
 
 // A curve of degree two as a function of the pixel, which is how the rasteriser carries it.

@@ -66,8 +66,8 @@ void write_strip(uint base, OpenStrip strip, vec3 conic) {
     cut_records.at[base + FRAME.weight.cut_stride - 1u] = vec4(slope, strip.away, strip.whole);
 }
 
-// Writes the weight of one surface as a polynomial, if one is as good as the exact form. Else `strip` is where it is open, on CPU
-// drivers.
+// Writes the weight of one surface as a polynomial, if one is as good as the exact form. Else `strip` is where a surface of a
+// combined record is open, on CPU drivers.
 bool write_curve(uint base, CurveSource source, float opacity, out OpenStrip strip) {
     float extent = opacity_extent(opacity);
     CurveSamples samples = first_samples(source, extent);
@@ -94,21 +94,20 @@ bool write_curve(uint base, CurveSource source, float opacity, out OpenStrip str
         write_strip(base, open_strip(quartic, 1.001 * extent), source.conic);
         return true;
     }
-    if (HAS_TERMS) {
-        strip = open_strip(square, samples, CURVE_RINGS, extent);
+    if (!(HAS_TERMS && COMBINED && source.bends)) {
+        return false;
     }
-    if (HAS_TERMS && COMBINED && source.bends) {
-        TermCurves fit = fitted_terms(samples);
-        if (is_good(fit, samples, opacity, extent)) {
-            write_terms(base, fit);
-            write_strip(base, strip, source.conic);
-            return true;
-        }
+    strip = open_strip(square, samples, CURVE_RINGS, extent);
+    TermCurves fit = fitted_terms(samples);
+    bool is_fitted = is_good(fit, samples, opacity, extent);
+    if (is_fitted) {
+        write_terms(base, fit);
+        write_strip(base, strip, source.conic);
     }
-    return false;
+    return is_fitted;
 }
 
-// Where one of several surfaces is open.
+// Finds where one of several surfaces is open.
 OpenStrip strip_of_surface(CurveSource source, float extent) {
     CurveSamples samples = first_samples(source, extent);
     Curve square;
@@ -261,7 +260,7 @@ void main() {
         if (write_curve(base, source, opacity, strip)) {
             return;
         }
-        has_strip = HAS_TERMS;
+        has_strip = HAS_TERMS && is_combined;
     } else if (HAS_TERMS && COMBINED && is_combined && is_fitted && count == 2u) {
         for (uint i = 0u; i < count; i++) {
             source.surface = entry_of(base, i);

@@ -28,7 +28,7 @@ uint carried_side(vec3 linear, vec3 curvature, vec2 delta) {
     return side_between(z - reach, z + reach, TILE_MARGIN * PHI_ONE);
 }
 
-// What a tile takes for the z of a splat with a record: outside its open strip it is whole, or away.
+// Returns the z that a tile takes for a splat with a record. Outside its open strip the splat is whole, or away.
 float z_beyond_strip(vec3 linear, vec3 curvature, vec2 delta) {
     OpenStrip strip = open_strip_of(linear, curvature);
     float at = dot(strip.slope, delta);

@@ -343,7 +343,7 @@ fn weight_data(
             "a beam switch of {switch} is not a size; give zero or more"
         )));
     }
-    // A record is a header of three, the surfaces, and the eye's own plane where the camera may be inside a splat.
+    // A record is a header of three, the surfaces, and the eye's own plane where the camera may be inside a splat, or a strip.
     let most_surfaces = layers.most_surfaces();
     let surfaces = 3 + layers.most_record_vectors() + 1;
     let cut_stride = match cuts(region.mode) {

@@ -26,6 +26,13 @@ fn main() {
         "types.rs",
         glsl::structs(&types, &limits) + &glsl::constants(&types),
     );
+    let answers = read("glsl/region/surface.glsl");
+    for kind in glsl::kinds(&types, "SURFACE_").skip(1) {
+        assert!(
+            answers.contains(&format!("case {kind}: ")),
+            "glsl/region/surface.glsl: RETURN_ANSWER has no line for {kind}, a kind of glsl/types.glsl"
+        );
+    }
     let modules = spirv_of(Path::new("glsl"), &out);
     write("shaders.rs", shaders(Path::new("glsl"), &modules));
     for name in pictures::NAMES {

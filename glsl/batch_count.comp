@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // Counts how many splats of each batch are in each tile of its macro-tile, and marks the tiles in which several surfaces cut
 // one of them.
-// True where tiles have a pipeline without code for several surfaces: an exact cut by more than one.
+// True where tiles have a pipeline without code for several surfaces: an exact cut by more than one, or by one that bends.
 layout(constant_id = 0) const bool SEVERAL = false;
 #define NEEDS_SPLATS SEVERAL
 #include "batch_tiles.glsl"
@@ -20,7 +20,7 @@ bool is_cut_by_several(uint splat) {
     if (!(linear.x < -Z_RANGE)) {
         return false; // whole, or one surface that the splat carries
     }
-    uint flags = to_uint(cut_records.at[record_number(linear.x) * FRAME.weight.cut_stride].w);
+    uint flags = to_uint(cut_records.at[record_number(linear.x) * EYE.weight.cut_stride].w);
     return flags >> CUT_COUNT_SHIFT != 1u || (flags & CUT_COMBINED) != 0u; // none, where two stages disagree by rounding, is weighed as several are
 }
 

@@ -50,8 +50,8 @@ void main() {
     barrier();
     uvec2 corner = corner_of(macro_tile);
     uvec2 at = corner + uvec2(tile % MACRO_COLUMNS, tile / MACRO_COLUMNS);
-    if (at.x < FRAME.tiles.tile_columns && at.y < tile_rows()) {
-        tile_begins.at[at.y * FRAME.tiles.tile_columns + at.x] = total | mark;
+    if (at.x < EYE.tiles.tile_columns && at.y < tile_rows()) {
+        tile_begins.at[at.y * EYE.tiles.tile_columns + at.x] = total | mark;
     }
     if (tile < MACRO_ROWS && corner.y + tile < tile_rows()) {
         uvec4 sum = uvec4(0u);

@@ -25,8 +25,8 @@ void main() {
     find_held(batch);
     uint local = gl_LocalInvocationIndex;
     uvec2 at = corner_of(batch.macro_tile) + uvec2(local % MACRO_COLUMNS, local / MACRO_COLUMNS);
-    if (local < MACRO_TILES && at.x < FRAME.tiles.tile_columns && at.y < tile_rows()) {
-        uint place = tile_begins.at[at.y * FRAME.tiles.tile_columns + at.x] + tile_counts.at[tile_count_place(number, local)];
+    if (local < MACRO_TILES && at.x < EYE.tiles.tile_columns && at.y < tile_rows()) {
+        uint place = tile_begins.at[at.y * EYE.tiles.tile_columns + at.x] + tile_counts.at[tile_count_place(number, local)];
         for (uint word = 0u; word < BATCH_WORDS; word++) {
             places[held_place(word, local)] = place;
             place += bitCount(held[held_place(word, local)]);

@@ -183,7 +183,7 @@ Span next_span(uint origin, inout uvec2 mask) {
 
 // The place in span_counts of the number of tiles that a run's splats touch in all.
 uint pairs_place(uint run) {
-    return FRAME.tiles.span_runs * tile_rows() + run;
+    return EYE.tiles.span_runs * tile_rows() + run;
 }
 
 #endif

@@ -1,17 +1,14 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Lists the blocks whose Gaussians differ, in order, and writes the indirect command over them.
-struct Params {
-    uint stage; // which stage they are for: 0 clip, 1 classify
-};
-#define PARAMS Params
+// Lists the blocks whose Gaussians differ, in order, behind the indirect command over them. It serves cuts, and frames, whose
+// constants begin with those of their cut.
+#define OF_CUT
 #include "block_runs.glsl"
 #include "region/sides.glsl"
 #include "groups.glsl"
 
 BUFFER(readonly, 1, uint, sides)
-BUFFER(writeonly, 2, uint, block_list)
-BUFFER(writeonly, 3, FrameCounts, counts)
+BUFFER_OF(writeonly, 2, block_list, uvec4 groups; uint at[])
 
 bool differs(uint block) {
     return (sides.at[block] & SIDE_BITS) == SIDE_CUTOFF;
@@ -30,10 +27,6 @@ void main() {
         }
     }
     if (run.is_last) {
-        if (push.params.stage == 0u) {
-            counts.at[0].clip_groups = groups(place, 1u);
-        } else {
-            counts.at[0].classify_groups = groups(place, 1u);
-        }
+        block_list.groups = groups(place, 1u);
     }
 }

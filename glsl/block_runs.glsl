@@ -33,7 +33,7 @@ shared uvec4 earlier_of_rows[RUN_ROWS];
 BlockRun block_run() {
     uint local = gl_LocalInvocationIndex;
     uint runs = gl_NumWorkGroups.x * RUNS;
-    uint blocks = FRAME.scene.block_count;
+    uint blocks = CUT.scene.block_count;
     uvec2 bounds = run_bounds(gl_GlobalInvocationID.x, runs, blocks);
     uvec4 total = uvec4(0u);
     for (uint block = bounds.x; block < bounds.y; block++) {

@@ -10,11 +10,11 @@ BUFFER(readonly, 2, Block, blocks)
 BUFFER(readonly, 3, uint, clip_sides)
 BUFFER(writeonly, 4, uint, block_sides)
 BUFFER(readonly, 5, uint, shortlists)
-#include "block.glsl"
+#include "block_view.glsl"
 
 void main() {
     uint block = LINEAR_GROUP * BLOCK_GROUP_SIZE + gl_LocalInvocationIndex;
-    if (block >= FRAME.scene.block_count) {
+    if (block >= CUT.scene.block_count) {
         return;
     }
     enter_layer_of_block(block);

@@ -3,20 +3,19 @@
 // One workgroup a block that neither view nor clip settles as a whole. It culls by footprint, opacity and size, and finds
 // the side of what is in view. It writes two bits a Gaussian (survives, is cut) and the block's totals; compact turns them
 // into ordered lists.
-#include "band.glsl"
+#include "beam.glsl"
 #define SETS 3u // visible, cut, invisible
 #include "side_masks.glsl"
 
 layout(constant_id = 0) const bool CLIP = false;
 
 BUFFER(readonly, 2, Gaussian, gaussians)
-BUFFER(readonly, 3, uint, block_list)
-BUFFER(readonly, 4, FrameCounts, counts)
-BUFFER(readonly, 5, uint, clip_sides)
-BUFFER(readonly, 6, uint, clip_masks)
-BUFFER(writeonly, 7, uint, masks)
-BUFFER(writeonly, 8, uint, block_counts)
-BUFFER(readonly, 9, uint, shortlists)
+BUFFER_OF(readonly, 3, block_list, uvec4 groups; uint at[])
+BUFFER(readonly, 4, uint, clip_sides)
+BUFFER(readonly, 5, uint, clip_masks)
+BUFFER(writeonly, 6, uint, masks)
+BUFFER(writeonly, 7, uint, block_counts)
+BUFFER(readonly, 8, uint, shortlists)
 #include "region/gaussian_side.glsl"
 
 // True when some pixel centre lies in the splat's bounding box and in the picture.
@@ -63,7 +62,7 @@ uint classify(uint block, uint local, bool is_in_view) {
         return SIDE_VISIBLE;
     }
     float sigma = largest(gaussian.scale.xyz);
-    if (FRAME.region.mode == MODE_EXACT && is_beam(f, sigma)) {
+    if (CUT.region.mode == MODE_EXACT && is_beam(f, sigma)) {
         float extent = opacity_extent(opacity_in_layer(gaussian));
         float deviations = beam_band(f, extent);
         enter_shortlist(block, deviations / extent);
@@ -74,7 +73,7 @@ uint classify(uint block, uint local, bool is_in_view) {
 
 void main() {
     uint group = LINEAR_GROUP;
-    bool is_block = group < counts.at[0].classify_groups.w;
+    bool is_block = group < block_list.groups.w;
     uint entry = is_block ? block_list.at[group] : 0u;
     uint block = entry & ~WHOLLY_IN_VIEW;
     enter_layer_of_block(block);

@@ -3,15 +3,16 @@
 // One workgroup a block that the clip may cut finds the side of each of its Gaussians, the paper's three classes
 // (section 3.2), whatever the camera sees of it. (Classify adds what perspective adds to the band of large splats.) A
 // block's masks are eight words of what is visible and eight of what is cut.
+#define OF_CUT
+#include "axes.glsl"
 #include "band.glsl"
 #define SETS 2u // visible, cut
 #include "side_masks.glsl"
 
 BUFFER(readonly, 2, Gaussian, gaussians)
-BUFFER(readonly, 3, uint, block_list)
-BUFFER(readonly, 4, FrameCounts, counts)
-BUFFER(writeonly, 5, uint, clip_masks)
-BUFFER(readonly, 6, uint, shortlists)
+BUFFER_OF(readonly, 3, block_list, uvec4 groups; uint at[])
+BUFFER(writeonly, 4, uint, clip_masks)
+BUFFER(readonly, 5, uint, shortlists)
 #include "region/gaussian_side.glsl"
 
 uint side_in_clip(Gaussian gaussian) {
@@ -21,7 +22,7 @@ uint side_in_clip(Gaussian gaussian) {
 
 void main() {
     uint group = LINEAR_GROUP;
-    bool is_block = group < counts.at[0].clip_groups.w;
+    bool is_block = group < block_list.groups.w;
     uint block = is_block ? block_list.at[group] : 0u;
     enter_layer_of_block(block);
     enter_shortlist(block, 1.0);

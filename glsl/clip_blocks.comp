@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // One invocation a block finds on which side of the clip it lies, which depends on the clip alone, not on the camera. The
 // blocks of a hidden layer count as invisible, so that none of their Gaussians is looked at.
+#define OF_CUT
 #include "frame.glsl"
 
 layout(local_size_x = BLOCK_GROUP_SIZE) in;
@@ -13,7 +14,7 @@ BUFFER(, 4, uint, shortlists)
 
 void main() {
     uint block = LINEAR_GROUP * BLOCK_GROUP_SIZE + gl_LocalInvocationIndex;
-    if (block < FRAME.scene.block_count) {
+    if (block < CUT.scene.block_count) {
         enter_layer_of_block(block);
         if (SHORTLISTED) {
             write_shortlist(block, blocks.at[block]);

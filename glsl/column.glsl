@@ -141,9 +141,9 @@ void beam_zs(ColumnSight column, vec4 half_space, out float z[ROWS]) {
     }
 }
 
-// `exact` with the camera outside the splat: exact_weight of glsl/weight.glsl. `delta` and `pixel_centre` are the first
-// row's.
-bool exact_weights(Record record, uint flags, vec2 delta, vec2 pixel_centre, float alpha[ROWS], out float weight[ROWS]) {
+// `exact` with the camera outside the splat. `delta` and `pixel_centre` are the first row's. `edges` are the pixels that see several
+// planes, a bit each: their weights are not found here.
+bool exact_weights(Record record, uint flags, vec2 delta, vec2 pixel_centre, float alpha[ROWS], out float weight[ROWS], inout uint edges) {
     ColumnSight column = column_sight(record, delta, pixel_centre);
     float z[ROWS];
     uint count = flags >> CUT_COUNT_SHIFT;
@@ -178,19 +178,9 @@ bool exact_weights(Record record, uint flags, vec2 delta, vec2 pixel_centre, flo
         }
     }
     shares(least, alpha, weight);
-    uint edges = 0u;
     for (uint row = 0u; row < ROWS; row++) {
         weight[row] = combined(flags, weight[row]);
         edges |= opens[row] > 1u && least[row] > -PHI_ONE && alpha[row] > 0.0 ? 1u << row : 0u;
-    }
-    // A loop over all rows would be unrolled, with the body once for each.
-    for (; edges != 0u; edges &= edges - 1u) {
-        uint edge = uint(findLSB(edges));
-        vec2 below = vec2(0.0, float(edge));
-        float share = exact_weight(record_base(record), flags, delta + below, pixel_centre + below);
-        for (uint row = 0u; row < ROWS; row++) {
-            weight[row] = row == edge ? share : weight[row];
-        }
     }
     return true;
 }
@@ -278,36 +268,19 @@ void chord_weights(Record record, uint flags, vec2 delta, vec2 pixel_centre, out
     }
 }
 
-// The weights of a combined record; false when all are whole. Where one or two surfaces cut the tile, all its pixels have them at
-// hand.
-bool combined_weights(Record record, uint flags, vec2 delta, vec2 pixel_centre, float alpha[ROWS], out float weight[ROWS]) {
+// The weights of a combined record; false when all are whole. `rows` are the pixels whose weights are not found here, a bit each.
+bool combined_weights(Record record, vec2 delta, vec2 pixel_centre, float alpha[ROWS], out float weight[ROWS], inout uint rows) {
     TileSurfaces surfaces = record_surfaces(record);
     if (surfaces.answers == FIRST_KEEPS && is_plane(surfaces.first)) {
         float z[ROWS];
         beam_zs(column_sight(record, delta, pixel_centre), surfaces.first.half_space, z);
         return shares(z, alpha, weight);
     }
-    bool open = false;
-    uint rows = 0u;
     for (uint row = 0u; row < ROWS; row++) {
         weight[row] = 1.0;
         rows |= alpha[row] > 0.0 ? 1u << row : 0u;
     }
-    // A loop over all rows would be unrolled, with the body once for each.
-    for (; rows != 0u; rows &= rows - 1u) {
-        uint at = uint(findLSB(rows));
-        vec2 below = vec2(0.0, float(at));
-        Sight s = sight_through(RECORD_AT(record, 0), RECORD_AT(record, 1), RECORD_AT(record, 2), pixel_centre + below - principal_point(), delta + below);
-        float share;
-        if (surfaces.answers == 0u || !share_of_tile_surfaces(line_through(s), surfaces, share)) {
-            share = combined_weight(s, record_base(record), flags, record_sides(record), push.params.sigma);
-        }
-        open = open || share < 1.0;
-        for (uint row = 0u; row < ROWS; row++) {
-            weight[row] = row == at ? share : weight[row];
-        }
-    }
-    return open;
+    return false;
 }
 
 // The weight of each pixel of a column; false when all are whole. `delta`, `uv` and `pixel_centre` are the first row's;
@@ -315,16 +288,18 @@ bool combined_weights(Record record, uint flags, vec2 delta, vec2 pixel_centre, 
 bool cut_weights(Record record, vec2 delta, vec2 uv, float v_step, vec2 pixel_centre, float alpha[ROWS],
                  out float weight[ROWS]) {
     uint flags = record_flags(record);
+    bool open = true;
+    uint rows = 0u; // that need all surfaces
     if (COMBINED && (flags & CUT_COMBINED) != 0u) {
-        return combined_weights(record, flags, delta, pixel_centre, alpha, weight);
+        open = combined_weights(record, delta, pixel_centre, alpha, weight, rows);
     } else if (COMBINED && CLIP_MODE == MODE_EXACT && (flags & CUT_TERMS) != 0u) {
         terms_weights(record, uv.x, uv.y, v_step, weight);
     } else if (CLIP_MODE == MODE_EXACT && (flags & CUT_CURVE) != 0u) {
-        return curve_weights(record, uv.x, uv.y, v_step, alpha, weight);
+        open = curve_weights(record, uv.x, uv.y, v_step, alpha, weight);
     } else if (CLIP_MODE == MODE_EXACT && (flags & CUT_FRONT) != 0u) {
         front_weights(record, flags, delta, pixel_centre, weight);
     } else if (CLIP_MODE == MODE_EXACT) {
-        return exact_weights(record, flags, delta, pixel_centre, alpha, weight);
+        open = exact_weights(record, flags, delta, pixel_centre, alpha, weight, rows);
     } else if ((flags & CUT_FRONT) == 0u) {
         chord_weights(record, flags, delta, pixel_centre, weight);
     } else {
@@ -333,7 +308,23 @@ bool cut_weights(Record record, vec2 delta, vec2 uv, float v_step, vec2 pixel_ce
             weight[row] = chord_weight(record_base(record), flags, delta + below, pixel_centre + below);
         }
     }
-    return true;
+    // A loop over all rows would be unrolled, with the body once for each.
+    for (; (COMBINED || (SEVERAL && CLIP_MODE == MODE_EXACT)) && rows != 0u; rows &= rows - 1u) {
+        uint at = uint(findLSB(rows));
+        vec2 below = vec2(0.0, float(at));
+        Sight s = sight_through(RECORD_AT(record, 0), RECORD_AT(record, 1), RECORD_AT(record, 2), pixel_centre + below - principal_point(), delta + below);
+        // Where one or two surfaces cut the tile, all its pixels have them at hand.
+        TileSurfaces surfaces = record_surfaces(record);
+        float share;
+        if (!COMBINED || surfaces.answers == 0u || !share_of_tile_surfaces(line_through(s), surfaces, share)) {
+            share = surfaces_weight(s, record_base(record), flags, record_sides(record));
+        }
+        open = open || share < 1.0;
+        for (uint row = 0u; row < ROWS; row++) {
+            weight[row] = row == at ? share : weight[row];
+        }
+    }
+    return open;
 }
 
 #endif

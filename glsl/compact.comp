@@ -8,15 +8,14 @@
 
 layout(local_size_x = BLOCK_SIZE) in;
 // True where splats may be cut.
-layout(constant_id = 0) const bool CUT = false;
+layout(constant_id = 0) const bool CUTS = false;
 
-BUFFER(readonly, 1, uint, block_list)
-BUFFER(readonly, 2, FrameCounts, counts)
-BUFFER(readonly, 3, uint, block_sides)
-BUFFER(readonly, 4, uint, masks)
-BUFFER(readonly, 5, uvec2, block_offsets)
-BUFFER(writeonly, 6, uint, splat_gaussians)
-BUFFER(writeonly, 7, uint, cutoffs)
+BUFFER_OF(readonly, 1, block_list, uvec4 groups; uint at[])
+BUFFER(readonly, 2, uint, block_sides)
+BUFFER(readonly, 3, uint, masks)
+BUFFER(readonly, 4, uvec2, block_offsets)
+BUFFER(writeonly, 5, uint, splat_gaussians)
+BUFFER(writeonly, 6, uint, cutoffs)
 
 // Set bits of a block's mask before bit `local`.
 uint rank(uint base, uint local) {
@@ -29,7 +28,7 @@ uint rank(uint base, uint local) {
 
 void put(uint splat_index, uint index, uint cut) {
     splat_gaussians.at[splat_index] = index;
-    if (CUT) {
+    if (CUTS) {
         splat_gaussians.at[cut_place(splat_index)] = cut;
     }
 }
@@ -37,7 +36,7 @@ void put(uint splat_index, uint index, uint cut) {
 void main() {
     uint group = LINEAR_GROUP;
     uint local = gl_LocalInvocationIndex;
-    if (group >= counts.at[0].compact_groups.w) {
+    if (group >= block_list.groups.w) {
         return;
     }
     uint block = block_list.at[group];
@@ -57,7 +56,7 @@ void main() {
         return;
     }
     uint cut = NOT_CUT;
-    if (CUT && (masks.at[base + WORDS + (local >> 5)] & bit) != 0u) {
+    if (CUTS && (masks.at[base + WORDS + (local >> 5)] & bit) != 0u) {
         cut = offset.y + rank(base + WORDS, local);
         cutoffs.at[cut] = index;
     }

@@ -10,7 +10,7 @@
 BUFFER(readonly, 1, uint, block_sides)
 BUFFER(readonly, 2, uvec4, block_counts)
 BUFFER(writeonly, 3, uvec2, block_offsets)
-BUFFER(writeonly, 4, uint, block_list)
+BUFFER_OF(writeonly, 4, block_list, uvec4 groups; uint at[])
 BUFFER(writeonly, 5, FrameCounts, counts)
 
 // Visible, cut and invisible Gaussians of a block, and 1 where some survive.
@@ -39,13 +39,15 @@ void main() {
         uint splats = place.x + place.y;
         counts.at[0].visible = place.x;
         counts.at[0].cutoff = place.y;
+        counts.at[0].long_records = 0u;
+        counts.at[0].long_strides = 0u;
         counts.at[0].invisible = place.z;
-        counts.at[0].culled = FRAME.scene.gaussian_count - splats - place.z;
-        counts.at[0].compact_groups = groups(place.w, 1u);
+        counts.at[0].culled = CUT.scene.gaussian_count - splats - place.z;
+        block_list.groups = groups(place.w, 1u);
         counts.at[0].project_groups = groups(splats, SPLAT_GROUP_SIZE);
         counts.at[0].cutoff_groups = groups(place.y, SPLAT_GROUP_SIZE);
         // Even a single splat is sorted: the passes carry it to the buffer that the draw reads.
-        uint sort_groups = FRAME.order.sort_runs > 0u ? FRAME.order.sort_runs / SORT_GROUP_SIZE
+        uint sort_groups = EYE.order.sort_runs > 0u ? EYE.order.sort_runs / SORT_GROUP_SIZE
             : (splats + RADIX_PARTITION - 1u) / RADIX_PARTITION;
         counts.at[0].sort_groups = uvec4(splats == 0u ? 0u : sort_groups, 1u, 1u, 0u);
         counts.at[0].draw = uvec4(4u, splats, 0u, 0u);
@@ -53,7 +55,7 @@ void main() {
         // Where tiles are wanted, binning counts them.
         counts.at[0].pairs = 0u;
         counts.at[0].tiled = 0u;
-        counts.at[0].span_count_groups = uvec4(splats == 0u ? 0u : FRAME.tiles.span_runs / SPAN_GROUP_SIZE, 1u, 1u, 0u);
+        counts.at[0].span_count_groups = uvec4(splats == 0u ? 0u : EYE.tiles.span_runs / SPAN_GROUP_SIZE, 1u, 1u, 0u);
         counts.at[0].span_groups = uvec4(0u);
         counts.at[0].part_groups = uvec4(0u);
         counts.at[0].row_groups = uvec4(0u);

@@ -9,7 +9,7 @@ layout(location = 0) flat out uvec2 filled; // tiles that hold anything, a bit e
 
 void main() {
     uint quad = uint(gl_VertexIndex) / 6u;
-    uvec2 tiles = uvec2(FRAME.tiles.tile_columns, tile_rows());
+    uvec2 tiles = uvec2(EYE.tiles.tile_columns, tile_rows());
     uint columns = (tiles.x + QUAD_TILES - 1u) / QUAD_TILES;
     uvec2 first = uvec2(quad % columns, quad / columns) * QUAD_TILES;
     filled = uvec2(0u);

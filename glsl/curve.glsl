@@ -78,34 +78,38 @@ struct CurveSamples {
 
 const uint FITTED_RINGS = 2u;
 
-void sample_rings(CurveSource source, uint first, uint end, float extent, inout CurveSamples z) {
-    for (uint ring = first; ring < end; ring++) {
-        for (uint step = 0u; step < CURVE_STEPS; step++) {
-            Exact exact = exact_form(source, curve_radius(ring, extent) * curve_direction(ring, step));
-            z.at[ring * CURVE_STEPS + step] = exact.z;
-            z.is_one = z.is_one && exact.is_one;
-            if (HAS_TERMS && COMBINED) {
-                z.terms[ring * CURVE_STEPS + step] = exact.terms;
-                z.has_terms = z.has_terms && exact.has_terms;
-            }
-        }
-    }
-}
-
 // The samples that are looked at first: what is fitted, and of a surface that bends the contour, where it may be crossed twice.
 uint first_rings(CurveSource source) {
     return COMBINED && source.bends ? FITTED_RINGS + 1u : FITTED_RINGS;
 }
 
-CurveSamples first_samples(CurveSource source, float extent) {
-    CurveSamples z;
-    Exact centre = exact_form(source, vec2(0.0));
-    z.centre = centre.z;
-    z.is_one = centre.is_one;
-    z.centre_terms = centre.terms;
-    z.has_terms = HAS_TERMS && centre.has_terms;
-    sample_rings(source, 0u, first_rings(source), extent, z);
-    return z;
+// The centre is the first sample, and those of the rings follow.
+const uint ALL_SAMPLES = 1u + CURVE_SAMPLES;
+
+uint first_samples(CurveSource source) {
+    return 1u + first_rings(source) * CURVE_STEPS;
+}
+
+void take_samples(CurveSource source, uint first, uint end, float extent, inout CurveSamples z) {
+    for (uint i = first; i < end; i++) {
+        uint at = max(i, 1u) - 1u;
+        uint ring = at / CURVE_STEPS;
+        vec2 place = curve_radius(ring, extent) * curve_direction(ring, at % CURVE_STEPS);
+        Exact exact = exact_form(source, i == 0u ? vec2(0.0) : place);
+        if (i == 0u) {
+            z.centre = exact.z;
+            z.is_one = exact.is_one;
+            z.centre_terms = exact.terms;
+            z.has_terms = HAS_TERMS && exact.has_terms;
+            continue;
+        }
+        z.at[at] = exact.z;
+        z.is_one = z.is_one && exact.is_one;
+        if (HAS_TERMS && COMBINED) {
+            z.terms[at] = exact.terms;
+            z.has_terms = z.has_terms && exact.has_terms;
+        }
+    }
 }
 
 // Fourier coefficients of the samples of a ring.

@@ -1,5 +1,5 @@
 // The cutoff record: what the fragment stage needs to weight a cut splat, computed once a splat by cutoff.comp.
-// vec4s of a record (FRAME.weight.cut_stride of them):
+// vec4s of a record (EYE.weight.cut_stride of them, or a multiple of that):
 //   0      fx / Z m1, the screen gradient along x for a pixel on the principal axis, times scale; the sum of
 //          CUT_BEAM, CUT_FRONT, CUT_UNION and 256 times the number of planes
 //   1      fy / Z m2, the same along y, times scale; scale
@@ -35,7 +35,14 @@ const uint CUT_UNION = 8u;
 const uint CUT_COMBINED = 16u;
 // The record's last vec4 is an OpenStrip.
 const uint CUT_STRIP = 64u;
+// More surfaces cut the splat than the record has room for: its last vec4's x names a long record as z does, which holds them all. It
+// lies behind those of all Gaussians and takes several of their places.
+const uint CUT_LONG = 128u;
 const uint CUT_COUNT_SHIFT = 8u;
+// The most surfaces of a long record, whose number is exact as a float.
+const uint LONG_SURFACES = 0xffffu;
+// How deep a stack of a record's answers may be: see answers.glsl.
+const uint LONG_DEPTH = 8u;
 
 // The rasteriser carries z at a splat's centre, dz/dx, dz/dy and the curvature, so that the usual case, one plane, needs
 // no record in the fragment stage. Beyond Z_RANGE, z says that the splat is whole; below -Z_RANGE its bits are Z_RECORD

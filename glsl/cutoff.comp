@@ -1,17 +1,20 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// One invocation a cutoff Gaussian writes its cutoff record: everything that the fragment stage needs to weight it.
-#include "band.glsl"
+// One invocation a cutoff Gaussian writes its cutoff record: everything that the fragment stage needs to weight it. Where more
+// surfaces cut it than a record has room for, it also writes a long record behind those of all Gaussians.
+#include "beam.glsl"
 #include "region/surface.glsl"
 #include "cut.glsl"
 #include "curve.glsl"
 #include "region/carried_bend.glsl"
 
 layout(local_size_x = SPLAT_GROUP_SIZE) in;
+layout(constant_id = 12) const bool SEVERAL = false; // whether a splat may be cut by more than one surface
+layout(constant_id = 16) const bool MANY = false; // whether more than RECORD_SURFACES may cut it
 
 BUFFER(readonly, 2, Gaussian, gaussians)
 BUFFER(readonly, 3, uint, cutoffs)
-BUFFER(readonly, 4, FrameCounts, counts)
+BUFFER(, 4, FrameCounts, counts)
 BUFFER(, 5, vec4, cut_records)
 BUFFER(readonly, 6, uint, shortlists)
 #include "region/reduced.glsl"
@@ -63,21 +66,26 @@ void write_terms(uint base, TermCurves t) {
 
 void write_strip(uint base, OpenStrip strip, vec3 conic) {
     vec2 slope = strip.slope.x * vec2(conic.x, 0.0) + strip.slope.y * conic.yz;
-    cut_records.at[base + FRAME.weight.cut_stride - 1u] = vec4(slope, strip.away, strip.whole);
+    cut_records.at[base + EYE.weight.cut_stride - 1u] = vec4(slope, strip.away, strip.whole);
 }
 
 // Writes the weight of one surface as a polynomial, if one is as good as the exact form. Else `strip` is where a surface of a
 // combined record is open, on CPU drivers.
 bool write_curve(uint base, CurveSource source, float opacity, out OpenStrip strip) {
     float extent = opacity_extent(opacity);
-    CurveSamples samples = first_samples(source, extent);
+    CurveSamples samples;
     Curve square;
     Curve cubic;
     Curve quartic;
-    fitted(samples.centre, samples.at, square, cubic, quartic);
-    bool is_settled = is_close(square, source, samples, opacity, extent);
-    if (!is_settled) {
-        sample_rings(source, first_rings(source), CURVE_RINGS, extent, samples);
+    bool is_settled = false;
+    uint first = first_samples(source);
+    // There is one copy of the samples' code for both turns.
+    for (uint turn = 0u; turn < 2u && !is_settled; turn++) {
+        take_samples(source, turn == 0u ? 0u : first, turn == 0u ? first : ALL_SAMPLES, extent, samples);
+        if (turn == 0u) {
+            fitted(samples.centre, samples.at, square, cubic, quartic);
+            is_settled = is_close(square, source, samples, opacity, extent);
+        }
     }
     if (is_settled || is_good(square, samples, opacity, extent)) {
         vec3 linear;
@@ -109,7 +117,8 @@ bool write_curve(uint base, CurveSource source, float opacity, out OpenStrip str
 
 // Finds where one of several surfaces is open.
 OpenStrip strip_of_surface(CurveSource source, float extent) {
-    CurveSamples samples = first_samples(source, extent);
+    CurveSamples samples;
+    take_samples(source, 0u, first_samples(source), extent, samples);
     Curve square;
     Curve cubic;
     Curve quartic;
@@ -120,7 +129,7 @@ OpenStrip strip_of_surface(CurveSource source, float extent) {
 // A splat of which all or nothing is kept.
 void write_decided(uint base, bool is_kept) {
     float side = is_kept ? 1.0 : -1.0;
-    if (FRAME.region.mode == MODE_EXACT) {
+    if (CUT.region.mode == MODE_EXACT) {
         write_carried(base, vec3(40.0 * side, 0.0, 0.0), vec3(0.0));
         return;
     }
@@ -148,13 +157,43 @@ bool are_planes(uint base, uint entries, out bool is_union) {
     return !bends && !(has_and && is_union);
 }
 
-void main() {
-    uint cut = LINEAR_GROUP * SPLAT_GROUP_SIZE + gl_LocalInvocationIndex;
-    if (cut >= counts.at[0].cutoff) {
-        return;
+// Writes the surfaces of a list that cut a Gaussian, those that come first where there is no room for all. Returns how many cut it.
+uint write_list(Footprint f, vec3 position, float deviations, bool is_union, uint room, inout uint at, out vec4 half_space) {
+    uint cutting = 0u;
+    uint room_at_last = room;
+    float last = 1e30;
+    half_space = vec4(0.0);
+    if (MANY && surface_count() > room) {
+        for (uint i = 0u; i < surface_count(); i++) {
+            cutting += listed_gaussian_side(surface_at(i), f.axes, position, deviations) != side_undecided() ? 1u : 0u;
+        }
+        last = cutting > room ? last_precedence(f, position, deviations, room_at_last) : last;
     }
-    uint index = cutoffs.at[cut];
-    enter_layer_of_block(index / BLOCK_SIZE);
+    uint written = 0u;
+    for (uint i = 0u; i < surface_count(); i++) {
+        uint surface = surface_at(i);
+        // A surface that keeps the whole splat changes no intersection, and one that drops it changes no union.
+        if (listed_gaussian_side(surface, f.axes, position, deviations) == side_undecided()) {
+            continue;
+        }
+        half_space = plane_half_space(surface, f.axes, position);
+        if (MANY && cutting > room) {
+            float here = precedence(UnitSurface(half_space, vec3(0.0), vec3(0.0)));
+            if (here > last || (here == last && room_at_last == 0u)) {
+                continue;
+            }
+            room_at_last -= here == last ? 1u : 0u;
+        }
+        half_space = beam_plane(half_space);
+        cut_records.at[at++] = is_union ? -half_space : half_space;
+        written++;
+    }
+    return max(cutting, written);
+}
+
+// Writes a cutoff record that has room for so many surfaces. `depth` is how deep a stack of their answers may be. Returns how many
+// surfaces cut the Gaussian.
+uint write_record(uint base, uint room, uint index, out uint depth) {
     Gaussian gaussian = gaussians.at[index];
     vec3 position = gaussian.position_opacity.xyz;
     Footprint f = footprint(gaussian);
@@ -167,44 +206,42 @@ void main() {
     }
 
     bool front = holds_the_eye(f, extent);
-    bool beam = FRAME.region.mode == MODE_RARA || is_beam(f, sigma) || (FRAME.weight.form == FORM_AUTO && front);
+    bool beam = CUT.region.mode == MODE_RARA || is_beam(f, sigma) || (EYE.weight.form == FORM_AUTO && front);
     front = front && beam;
 
-    uint base = cut * FRAME.weight.cut_stride;
+    written_record = base;
+    depth = 2u;
+    uint cutting = 0u;
     uint at = base + CUT_HEADER;
     bool is_combined = COMBINED && LAYER.region.combined != 0u;
     bool is_union = !is_combined && LAYER.region.op == OP_OR && LAYER.region.surface_count > 1u;
     vec4 half_space;
     if (is_combined) {
-        uint entries;
-        uint decided = write_reduced(base, f, position, deviations, entries);
-        if (decided < 2u) {
+        Rest rest = write_reduced(f, position, deviations, room);
+        cutting = rest.cutting;
+        depth = rest.depth;
+        if (rest.decided < 2u) {
             // The rest of the region's expression has an answer that its parts' sides do not show.
-            write_decided(base, decided == 1u);
-            return;
+            write_decided(base, rest.decided == 1u);
+            return cutting;
         }
-        is_combined = !are_planes(base, entries, is_union);
+        is_combined = !are_planes(base, rest.entries, is_union);
         if (is_combined) {
-            at += ENTRY_VECTORS * entries;
+            at += ENTRY_VECTORS * rest.entries;
             half_space = cut_records.at[base + CUT_HEADER];
         } else {
-            for (uint i = 0u; i < entries; i++) {
+            for (uint i = 0u; i < rest.entries; i++) {
                 half_space = beam_plane(cut_records.at[base + CUT_HEADER + ENTRY_VECTORS * i]);
                 cut_records.at[at++] = is_union ? -half_space : half_space;
             }
         }
     }
-    for (uint i = 0u; i < surface_count() && (!COMBINED || LAYER.region.combined == 0u); i++) {
-        uint surface = surface_at(i);
-        // A surface that keeps the whole splat changes no intersection, and one that drops it changes no union.
-        if (surface_gaussian_side(surface, f.axes, position, deviations) != side_undecided()) {
-            half_space = beam_plane(surface_half_space(surface, f.axes, position));
-            cut_records.at[at++] = is_union ? -half_space : half_space;
-        }
+    if (!COMBINED || LAYER.region.combined == 0u) {
+        cutting = write_list(f, position, deviations, is_union, room, at, half_space);
     }
     uint count = (at - base - CUT_HEADER) / (is_combined ? ENTRY_VECTORS : 1u);
     uint flags = count << CUT_COUNT_SHIFT | (is_combined ? CUT_COMBINED : 0u);
-    if (is_union && count == 1u && !front && FRAME.region.mode == MODE_EXACT) {
+    if (is_union && count == 1u && !front && CUT.region.mode == MODE_EXACT) {
         cut_records.at[at - 1u] = half_space; // not its complement: without CUT_UNION a record holds what is kept
     } else if (is_union) {
         flags |= CUT_UNION;
@@ -213,7 +250,7 @@ void main() {
         cut_records.at[base] = vec4(vec3(0.0), float(flags));
         cut_records.at[at - 1u] = affine_plane(f, half_space);
         cut_records.at[at] = vec4(0.0);
-        return;
+        return cutting;
     }
     // The footprint's own gradients are the same in all pixels.
     CurveSource source;
@@ -234,15 +271,15 @@ void main() {
         vec2 far = max(abs(VIEW.focal.zw), abs(VIEW.size.xy - VIEW.focal.zw));
         float size = max(largest(b1) + far.x * largest(lean), largest(b2) + far.y * largest(lean));
         // Mode `rara` has no low-pass to keep in proportion, so it also scales up what is tiny.
-        float scale = 1.0 / max(size, FRAME.region.mode == MODE_RARA ? 1e-30 : 1.0);
+        float scale = 1.0 / max(size, CUT.region.mode == MODE_RARA ? 1e-30 : 1.0);
         source.h0 = vec4(b1 * scale, 0.0);
         source.h1 = vec4(b2 * scale, scale);
         source.h2 = vec4(lean * scale, LAYER.content.low_pass * scale * scale);
     }
 
     // A switch of zero asks for the exact form itself.
-    bool is_fitted = FRAME.region.mode == MODE_EXACT && FRAME.weight.form == FORM_AUTO && !front
-        && (beam ? FRAME.weight.beam_switch > 0.0 : is_combined);
+    bool is_fitted = CUT.region.mode == MODE_EXACT && EYE.weight.form == FORM_AUTO && !front
+        && (beam ? EYE.weight.beam_switch > 0.0 : is_combined);
     float opacity = opacity_on_screen(f, gaussian);
     OpenStrip strip;
     bool has_strip = false;
@@ -254,14 +291,14 @@ void main() {
             Sight sight = sight_through(source.h0, source.h1, source.h2, vec2(0.0), vec2(0.0));
             if (!beam && carried_bend(sight, source.surface, f.scale, linear, curvature)) {
                 write_carried(base, linear, curvature);
-                return;
+                return cutting;
             }
         }
         if (write_curve(base, source, opacity, strip)) {
-            return;
+            return cutting;
         }
         has_strip = HAS_TERMS && is_combined;
-    } else if (HAS_TERMS && COMBINED && is_combined && is_fitted && count == 2u) {
+    } else if (HAS_TERMS && COMBINED && SEVERAL && is_combined && is_fitted && count == 2u) {
         for (uint i = 0u; i < count; i++) {
             source.surface = entry_of(base, i);
             OpenStrip one = strip_of_surface(source, opacity_extent(opacity));
@@ -284,4 +321,38 @@ void main() {
     cut_records.at[base] = vec4(source.h0.xyz, float(flags | CUT_BEAM));
     cut_records.at[base + 1u] = source.h1;
     cut_records.at[base + 2u] = source.h2;
+    return cutting;
+}
+
+void main() {
+    uint cut = LINEAR_GROUP * SPLAT_GROUP_SIZE + gl_LocalInvocationIndex;
+    if (cut >= counts.at[0].cutoff) {
+        return;
+    }
+    uint index = cutoffs.at[cut];
+    enter_layer_of_block(index / BLOCK_SIZE);
+    uint stride = EYE.weight.cut_stride;
+    uint base = cut * stride;
+    uint room = LAYER.region.combined != 0u ? RECORD_SURFACES : RECORD_PLANES;
+    // There is one copy of the record's code for both.
+    for (uint turn = 0u; turn < (MANY ? 2u : 1u); turn++) {
+        uint depth;
+        uint cutting = write_record(base, room, index, depth);
+        if (!MANY || turn > 0u || cutting <= room || cutting > LONG_SURFACES || depth > LONG_DEPTH) {
+            return;
+        }
+        room = cutting;
+        uint vectors = CUT_HEADER + (LAYER.region.combined != 0u ? ENTRY_VECTORS : 1u) * room + 1u;
+        uint strides = (vectors + stride - 1u) / stride;
+        // Where a long record lies depends on the order of these additions, but no pixel does: either all have room, or none is used.
+        uint place = atomicAdd(counts.at[0].long_strides, strides);
+        atomicAdd(counts.at[0].long_records, 1u);
+        if (place + strides > EYE.weight.long_strides) {
+            return;
+        }
+        uint number = CUT.scene.gaussian_count + place;
+        cut_records.at[base].w = float(to_uint(cut_records.at[base].w) & ~CUT_STRIP | CUT_LONG);
+        cut_records.at[base + stride - 1u].x = uintBitsToFloat(Z_RECORD + number);
+        base = number * stride;
+    }
 }

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // One invocation a splat finds how deep it is in each pixel, and how the clip changes that.
-#include "band.glsl"
+#include "beam.glsl"
 #include "cut.glsl"
 
 layout(local_size_x = SPLAT_GROUP_SIZE) in;
@@ -36,27 +36,26 @@ void main() {
     Footprint f = footprint(gaussian);
     vec3 c = cross(f.b1, f.b2);
     SplatDepth depth;
-    bool has_parts = COMBINED && LAYER.region.op == OP_PARTS;
     bool is_union = LAYER.region.op == OP_OR;
     depth.mean = vec4(f.view_centre.z, slope_of(f, c, f.m3), is_union ? 1.0 : 0.0);
     depth.far = vec4(8.0, 0.0, 0.0, 0.0);
     depth.near = depth.far;
     vec3 position = gaussian.position_opacity.xyz;
-    bool is_cut = FRAME.region.mode >= MODE_RARA;
+    bool is_cut = CUT.region.mode >= MODE_RARA;
     float deviations = 0.0;
-    if (has_parts || SHORTLISTED) {
+    if (has_parts() || SHORTLISTED) {
         float extent = opacity_extent(opacity_in_layer(gaussian));
         deviations = band_in_view(f, largest(gaussian.scale.xyz), extent);
         enter_shortlist(index / BLOCK_SIZE, deviations / band(extent));
     }
-    if (has_parts) {
+    if (has_parts()) {
         // What cuts a splat of a region with parts is taken for an intersection.
         is_cut = is_cut && gaussian_side(f.axes, position, deviations) == SIDE_CUTOFF;
     }
     uint asked = is_cut ? surface_count() : 0u;
     for (uint i = 0u; i < asked; i++) {
         uint surface = surface_at(i);
-        if (has_parts && surface_gaussian_side(surface, f.axes, position, deviations) != SIDE_CUTOFF) {
+        if (has_parts() && surface_gaussian_side(surface, f.axes, position, deviations) != SIDE_CUTOFF) {
             continue;
         }
         vec4 half_space = surface_half_space(surface, f.axes, position);

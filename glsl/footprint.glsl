@@ -8,7 +8,7 @@
 // gradient of w, m3 or nothing, b1 = fx/w (m1 - X/w dw) holds for both.
 #ifndef RARA_FOOTPRINT
 #define RARA_FOOTPRINT
-#include "extent.glsl"
+#include "axes.glsl"
 #include "layer.glsl"
 #include "two_float.glsl"
 
@@ -27,18 +27,6 @@ struct Footprint {
     vec2 screen_centre; // px
     bool clamped; // whether the slope was clamped
 };
-
-mat3 rotation_matrix(vec4 q) {
-    vec3 d = q.xyz + q.xyz;
-    vec3 x = q.x * d;
-    vec3 w = q.w * d;
-    float yy = q.y * d.y;
-    float yz = q.y * d.z;
-    float zz = q.z * d.z;
-    return mat3(1.0 - (yy + zz), x.y + w.z, x.z - w.y,
-                x.y - w.z, 1.0 - (x.x + zz), yz + w.x,
-                x.z + w.y, yz - w.x, 1.0 - (x.x + yy));
-}
 
 // The centre relative to the eye, the layer's axes and units.
 vec3 eye_relative(vec3 position) {
@@ -81,11 +69,6 @@ void screen_gradients(Footprint f, vec2 slope, out vec3 b1, out vec3 b2) {
     vec2 magnification = quotient(VIEW.focal.xy, f.w);
     b1 = magnification.x * (f.m1 - slope.x * f.w_gradient);
     b2 = magnification.y * (f.m2 - slope.y * f.w_gradient);
-}
-
-mat3 half_axes(Gaussian gaussian) {
-    mat3 turn = rotation_matrix(gaussian.rotation);
-    return mat3(turn[0] * gaussian.scale.x, turn[1] * gaussian.scale.y, turn[2] * gaussian.scale.z);
 }
 
 // Makes a footprint without what projection finds.

@@ -15,7 +15,7 @@ uint large_tie_size(uint splats) {
 
 // Numbers of a stretch: whole partitions, so many that there are no more stretches than MOST_STRETCHES.
 uint stretch_size() {
-    uint partitions = (FRAME.scene.gaussian_count + RADIX_PARTITION - 1u) / RADIX_PARTITION;
+    uint partitions = (CUT.scene.gaussian_count + RADIX_PARTITION - 1u) / RADIX_PARTITION;
     return RADIX_PARTITION * max(LEAST_STRETCH, (partitions + MOST_STRETCHES - 1u) / MOST_STRETCHES);
 }
 
@@ -32,13 +32,13 @@ uint tie_count_place(uint stretch, uint tie) {
 }
 
 uint tie_bits_place(uint number) {
-    uint stretches = (FRAME.scene.gaussian_count + stretch_size() - 1u) / stretch_size();
+    uint stretches = (CUT.scene.gaussian_count + stretch_size() - 1u) / stretch_size();
     return 1u + (stretches + 1u) * MOST_LARGE_TIES + number / 32u;
 }
 
 // In `tie_members`: who has a number, and behind room for all of them of which tie it is one.
 uint tie_place(uint number) {
-    return FRAME.scene.gaussian_count + number;
+    return CUT.scene.gaussian_count + number;
 }
 
 #endif

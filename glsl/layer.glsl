@@ -10,17 +10,19 @@ layout(constant_id = 9) const bool LAYERED = false;
 // The number of the layer.
 uint layer_number = 0u;
 
-#define LAYER frame.layers[layer_number]
-#define LAYER_VIEW LAYER.views[EYE]
+#define LAYER CUT_LAYER(layer_number)
+#ifndef OF_CUT
+#define LAYER_VIEW frame.layers[layer_number].view
+#endif
 
 // Makes LAYER that of a block.
 void enter_layer_of_block(uint block) {
     if (LAYERED) {
-        uint end = FRAME.scene.layer_count;
+        uint end = CUT.scene.layer_count;
         layer_number = 0u;
         while (end - layer_number > 1u) {
             uint middle = (layer_number + end) >> 1;
-            if (frame.layers[middle].content.first_block <= block) {
+            if (CUT_LAYER(middle).content.first_block <= block) {
                 layer_number = middle;
             } else {
                 end = middle;

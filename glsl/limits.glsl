@@ -6,6 +6,9 @@
 const float COMPENSATION_SQUARE_MIN = 0.000025;
 // Centres nearer than this along the view axis are culled where a camera has no near cut of its own, the scene's units.
 const float NEAR_Z = 0.2;
+// The least ratio of a Gaussian's smallest deviation to its largest: thinner ones are taken to be as thick. That is more than the
+// rounding of a rotation turns a disc out of its plane, and no pixel shows it.
+const float THINNEST = 1e-6;
 // The projection's Jacobian is evaluated with x/z and y/z clamped this share of the picture beyond each edge.
 const float CLAMP_MARGIN = 0.15;
 // An opaque splat counts as one that lets this much through where the logarithm of that is needed.
@@ -18,8 +21,6 @@ const float BEAM_SWITCH = 0.005;
 const float WIDENING_REST = 0.05;
 // A plane this many deviations beyond the eye cuts off no more than 2e-9 of what is in front of the eye.
 const float BEYOND_EYE = 6.0;
-// The most eyes that a frame has a picture of.
-const uint MAX_VIEWS = 1u;
 // The most coefficients that a colour channel has: those of degree 3.
 const uint MAX_SH_COEFFICIENTS = 16u;
 // Opacity below which a splat is invisible everywhere, and alpha below which a cut splat's weight is not computed: 1/255.
@@ -52,9 +53,10 @@ const uint SORT_BITS = 8u;
 const uint SORT_GROUP_SIZE = 64u;
 // Most splats of one depth that one invocation orders alone.
 const uint TIES_ALONE = 24u;
-// Surfaces that a splat is weighed by where regions have parts or bend, those that cut it nearest its centre. Of the others
-// it is on the side of its centre. A region that is a flat list of planes has no such limit.
-const uint MAX_CUTTING = 8u;
+// Surfaces for which a cutoff record has room in a region that has parts or bends. A splat that more cut has a long record.
+const uint RECORD_SURFACES = 8u;
+// The same in a region that is a list of planes.
+const uint RECORD_PLANES = 32u;
 // Cutoff records that splats can name: as many bit patterns of floats are below -2.5e30.
 const uint MAX_RECORDS = 54 << 22;
 // Surfaces of a region from which its blocks have shortlists on GPUs: the surfaces that may cut a Gaussian of the block.

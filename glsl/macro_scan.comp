@@ -24,7 +24,7 @@ void main() {
         my_all = capped_sum(my_all, sum);
     }
     uint all = capped_total(my_all);
-    bool has_room = all <= FRAME.room.pair_capacity;
+    bool has_room = all <= EYE.room.pair_capacity;
     if (p == 0u && local == 0u) {
         counts.at[0].pairs = has_room ? 0u : all;
         counts.at[0].macro_pairs = has_room ? all : 0u;

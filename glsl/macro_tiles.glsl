@@ -8,7 +8,7 @@
 const uint SEVERAL_TILE = 1u << 31u;
 
 uint macro_columns() {
-    return (FRAME.tiles.tile_columns + MACRO_COLUMNS - 1u) / MACRO_COLUMNS;
+    return (EYE.tiles.tile_columns + MACRO_COLUMNS - 1u) / MACRO_COLUMNS;
 }
 
 uint macro_tile_count() {

@@ -87,7 +87,6 @@ float both_positive(float h, float k, float p, float q, vec2 rho) {
 // A half-space on a line of sight.
 struct Threshold {
     float z;
-    bool far; // whether the far side is kept
     Direction direction;
 };
 

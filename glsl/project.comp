@@ -14,7 +14,7 @@ layout(local_size_x_id = 8) in;
 // Splats of an invocation. On processors, whose workgroups are small, it asks for several at once, by a word of each: one wait
 // brings them all into the cache.
 const uint TURNS = SPLAT_GROUP_SIZE / gl_WorkGroupSize.x;
-layout(constant_id = 0) const bool CUT = false;
+layout(constant_id = 0) const bool CUTS = false;
 // True when tiles are wanted.
 layout(constant_id = 2) const bool TILES = false;
 // True when quads are drawn.
@@ -106,8 +106,8 @@ void project(uint splat_index, uint index, float x, uint first) {
 
     Splat splat;
     vec3 conic = conic_of(f);
-    uint cut = CUT ? splat_gaussians.at[cut_place(splat_index)] : NOT_CUT;
-    Carried weight = CUT ? carried_weight(cut) : whole_weight();
+    uint cut = CUTS ? splat_gaussians.at[cut_place(splat_index)] : NOT_CUT;
+    Carried weight = CUTS ? carried_weight(cut) : whole_weight();
     Quad quad = quad_around(f, extent, weight);
     if (QUADS) {
         quads.at[splat_index] = quad;
@@ -123,7 +123,7 @@ void project(uint splat_index, uint index, float x, uint first) {
     if (!splats_lie_apart()) {
         SPLAT_CURVATURE(splat_index) = splat.curvature_depth;
     } else {
-        if (CUT && weight.linear.x < Z_RANGE) {
+        if (CUTS && weight.linear.x < Z_RANGE) {
             SPLAT_CURVATURE(splat_index) = splat.curvature_depth;
         }
         SPLAT_DEPTH(splat_index) = splat.curvature_depth.w;
@@ -141,9 +141,9 @@ void project(uint splat_index, uint index, float x, uint first) {
     }
     // Positive floats order like their bits. Counted from the nearest depth that the scene's bounds allow they need
     // fewer bits, and the sort fewer passes; dropping low bits never reverses an order.
-    float far = FRAME.order.by_distance == 0u ? f.view_centre.z : dot(f.view_centre, f.view_centre);
-    uint depth = max(floatBitsToUint(far), FRAME.order.key_near) - FRAME.order.key_near;
-    depth_keys.at[splat_index] = min(depth, FRAME.order.key_span) >> FRAME.order.key_shift;
+    float far = EYE.order.by_distance == 0u ? f.view_centre.z : dot(f.view_centre, f.view_centre);
+    uint depth = max(floatBitsToUint(far), EYE.order.key_near) - EYE.order.key_near;
+    depth_keys.at[splat_index] = min(depth, EYE.order.key_span) >> EYE.order.key_shift;
     if (NUMBERS) {
         depth_keys.at[number_place(splat_index)] = floatBitsToUint(gaussian.scale.w);
     }

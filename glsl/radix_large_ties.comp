@@ -30,7 +30,7 @@ uint before(uint stretch, uint tie) {
 }
 
 uint digit_of(uint number, uint first_tie) {
-    if (number >= FRAME.scene.gaussian_count || (large_ties.at[tie_bits_place(number)] >> number % 32u & 1u) == 0u) {
+    if (number >= CUT.scene.gaussian_count || (large_ties.at[tie_bits_place(number)] >> number % 32u & 1u) == 0u) {
         return TIES_AT_ONCE;
     }
     // Those before the first turn over.
@@ -61,7 +61,7 @@ void main() {
     uint local = gl_LocalInvocationIndex;
     uint stretch = gl_WorkGroupID.x;
     uint first_number = stretch * stretch_size();
-    uint end = min(first_number + stretch_size(), FRAME.scene.gaussian_count);
+    uint end = min(first_number + stretch_size(), CUT.scene.gaussian_count);
     uint tie_count = KEY_COUNT / large_tie_size(KEY_COUNT) + 1u;
     for (uint first_tie = 0u; first_tie < tie_count; first_tie += TIES_AT_ONCE) {
         uint tie = first_tie + local;

@@ -2,19 +2,18 @@
 #extension GL_GOOGLE_include_directive : require
 // One workgroup a block between the clip's old and new surface finds the side of each of its Gaussians now, and whether
 // what the rasteriser holds of it has to change.
-#include "band.glsl"
+#include "beam.glsl"
 #include "reclip.glsl"
 #define SETS 4u // visible, cut, invisible, and those of which what the rasteriser holds changes
 #include "side_masks.glsl"
 
 BUFFER(readonly, 2, Gaussian, gaussians)
-BUFFER(readonly, 3, uint, block_list)
-BUFFER(readonly, 4, FrameCounts, counts)
-BUFFER(readonly, 5, uint, revisits)
-BUFFER(readonly, 6, uint, block_sides)
-BUFFER(readonly, 7, uint, masks)
-BUFFER(, 8, uint, reclips)
-BUFFER(readonly, 9, uint, shortlists)
+BUFFER_OF(readonly, 3, block_list, uvec4 groups; uint at[])
+BUFFER(readonly, 4, uint, revisits)
+BUFFER(readonly, 5, uint, block_sides)
+BUFFER(readonly, 6, uint, masks)
+BUFFER(, 7, uint, reclips)
+BUFFER(readonly, 8, uint, shortlists)
 #include "region/gaussian_side.glsl"
 
 uint gaussian_side_before(uint block, uint local) {
@@ -47,7 +46,7 @@ bool is_in_view(uint block, uint local) {
 
 void main() {
     uint group = LINEAR_GROUP;
-    bool is_block = group < counts.at[0].clip_groups.w;
+    bool is_block = group < block_list.groups.w;
     uint block = is_block ? block_list.at[group] : 0u;
     enter_layer_of_block(block);
     uint length = is_block ? block_length(block) : 0u;

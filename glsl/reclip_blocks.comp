@@ -17,6 +17,7 @@ BUFFER(readonly, 4, uvec4, block_counts)
 BUFFER(writeonly, 5, uint, revisits)
 BUFFER(, 6, uint, reclips)
 BUFFER(, 7, uint, shortlists)
+#include "block_view.glsl"
 #include "region/block_shortlist.glsl"
 
 // Blocks only partly in view may hold Gaussians whose band the camera widens by any amount.
@@ -27,7 +28,7 @@ uint block_side_now(Block block, uint view_side) {
 
 void main() {
     uint block = LINEAR_GROUP * BLOCK_GROUP_SIZE + gl_LocalInvocationIndex;
-    if (block >= FRAME.scene.block_count) {
+    if (block >= CUT.scene.block_count) {
         return;
     }
     enter_layer_of_block(block);

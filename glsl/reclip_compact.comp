@@ -6,19 +6,18 @@
 
 layout(local_size_x = BLOCK_SIZE) in;
 
-BUFFER(readonly, 1, uint, block_list)
-BUFFER(readonly, 2, FrameCounts, counts)
-BUFFER(readonly, 3, uint, block_sides)
-BUFFER(readonly, 4, uint, masks)
-BUFFER(readonly, 5, uvec2, block_offsets)
-BUFFER(readonly, 6, uint, reclips)
-BUFFER(writeonly, 7, uvec2, recuts)
-BUFFER(writeonly, 8, uint, cutoffs)
+BUFFER_OF(readonly, 1, block_list, uvec4 groups; uint at[])
+BUFFER(readonly, 2, uint, block_sides)
+BUFFER(readonly, 3, uint, masks)
+BUFFER(readonly, 4, uvec2, block_offsets)
+BUFFER(readonly, 5, uint, reclips)
+BUFFER(writeonly, 6, uvec2, recuts)
+BUFFER(writeonly, 7, uint, cutoffs)
 
 void main() {
     uint group = LINEAR_GROUP;
     uint local = gl_LocalInvocationIndex;
-    if (group >= counts.at[0].clip_groups.w) {
+    if (group >= block_list.groups.w) {
         return;
     }
     uint block = block_list.at[group];

@@ -28,6 +28,8 @@ void main() {
     if (run.is_last) {
         counts.at[0].visible = place.x;
         counts.at[0].cutoff = place.y;
+        counts.at[0].long_records = 0u;
+        counts.at[0].long_strides = 0u;
         counts.at[0].invisible = place.z;
         counts.at[0].cutoff_groups = groups(place.y, SPLAT_GROUP_SIZE);
         counts.at[0].recut_groups = groups(place.w, SPLAT_GROUP_SIZE);

@@ -80,6 +80,6 @@ Rect rect_of_word(uint word) {
 }
 
 // Where the word of a splat is.
-#define RECT_WORD(tile_masks, splat) tile_masks.at[FRAME.scene.gaussian_count + (splat) / 4u][(splat) % 4u]
+#define RECT_WORD(tile_masks, splat) tile_masks.at[CUT.scene.gaussian_count + (splat) / 4u][(splat) % 4u]
 
 #endif

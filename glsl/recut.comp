@@ -32,7 +32,7 @@ void mark(uint splat_index) {
     if (!needs_mask(word)) {
         Rect rect = word == RECT_NONE ? NO_RECT : rect_of_word(word);
         for (uint row = 0u; row < rect.size.y; row++) {
-            uint first = (rect.first.y + row) * FRAME.tiles.tile_columns + rect.first.x;
+            uint first = (rect.first.y + row) * EYE.tiles.tile_columns + rect.first.x;
             for (uint tile = first; tile < first + rect.size.x; tile++) {
                 dirty.at[tile] = 1u;
             }
@@ -42,7 +42,7 @@ void mark(uint splat_index) {
     uvec4 tiles = tile_masks.at[splat_index];
     for (uvec2 mask = tiles.y == 0u ? tiles.zw : uvec2(0u); (mask.x | mask.y) != 0u;) {
         Span span = next_span(tiles.x, mask);
-        uvec2 columns = span.columns + span.row * FRAME.tiles.tile_columns;
+        uvec2 columns = span.columns + span.row * EYE.tiles.tile_columns;
         for (uint tile = columns.x; tile < columns.y; tile++) {
             dirty.at[tile] = 1u;
         }
@@ -52,7 +52,7 @@ void mark(uint splat_index) {
         splat.conic_cut.z = Z_WHOLE;
         Outline o = bounded_outline(splat, tiles.zw);
         for (uint row = o.rows.x; row < o.rows.y; row++) {
-            uvec2 columns = tiles_in_row(o, row) + row * FRAME.tiles.tile_columns;
+            uvec2 columns = tiles_in_row(o, row) + row * EYE.tiles.tile_columns;
             for (uint tile = columns.x; tile < columns.y; tile++) {
                 dirty.at[tile] = 1u;
             }

@@ -46,9 +46,9 @@ uint kind_of(uint marked_count) {
 void write_commands(uint pairs, uint filled, uint several) {
     // Where the macro-tiles' pairs had no room, it is known already how many are needed.
     bool tiled = decide_room(max(pairs, counts.at[0].pairs));
-    tile_begins.at[FRAME.tiles.tile_count] = pairs;
-    tile_list.at[FRAME.tiles.tile_count] = filled - several;
-    tile_list.at[FRAME.tiles.tile_count + 1u] = several;
+    tile_begins.at[EYE.tiles.tile_count] = pairs;
+    tile_list.at[EYE.tiles.tile_count] = filled - several;
+    tile_list.at[EYE.tiles.tile_count + 1u] = several;
     counts.at[0].tile_groups = groups(tiled ? filled - several : 0u, 1u);
     counts.at[0].several_tile_groups = groups(tiled ? several : 0u, 1u);
 }
@@ -73,10 +73,10 @@ void main() {
     uint place = before.x;
     uint several = before.z;
     uint few = before.y - several;
-    for (uint first = 0u; first < FRAME.tiles.tile_columns; first += RADIX_GROUP_SIZE) {
+    for (uint first = 0u; first < EYE.tiles.tile_columns; first += RADIX_GROUP_SIZE) {
         uint column = first + local;
-        uint tile = row * FRAME.tiles.tile_columns + column;
-        bool is_tile = column < FRAME.tiles.tile_columns;
+        uint tile = row * EYE.tiles.tile_columns + column;
+        bool is_tile = column < EYE.tiles.tile_columns;
         uint count = is_tile ? tile_begins.at[tile] : 0u;
         uint kind = kind_of(count);
         uint total;
@@ -89,7 +89,7 @@ void main() {
         if (kind == 1u) {
             tile_list.at[few + (kinds_before & 0xffffu)] = tile;
         } else if (kind != 0u) {
-            tile_list.at[FRAME.tiles.tile_count - 1u - several - (kinds_before >> 16u)] = tile;
+            tile_list.at[EYE.tiles.tile_count - 1u - several - (kinds_before >> 16u)] = tile;
         }
         place += total;
         few += kinds & 0xffffu;

@@ -22,7 +22,7 @@ uint sh_words(uint coefficients) {
 
 // The first word of a Gaussian.
 uint sh_base(uint index) {
-    return index * sh_words(FRAME.scene.sh_coefficients);
+    return index * sh_words(CUT.scene.sh_coefficients);
 }
 
 float sh_half(uint base, uint k) {

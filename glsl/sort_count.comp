@@ -21,7 +21,7 @@ void main() {
     }
     uint number = push.params.pass == 0u ? 0u : KEY_DIGIT;
     uint base = number == 0u ? 0u : KEY_BASE;
-    uvec2 bounds = run_bounds(run, FRAME.order.sort_runs, KEY_COUNT);
+    uvec2 bounds = run_bounds(run, EYE.order.sort_runs, KEY_COUNT);
     uint least = ~0u;
     uint greatest = 0u;
     for (uint i = bounds.x; i < bounds.y; i++) {

@@ -5,7 +5,7 @@
 #define RARA_SORT_RUNS
 #include "sort.glsl"
 
-#define RANGES FRAME.order.sort_runs
-#define RANGE_PLACE(run) (FRAME.order.sort_runs * DIGITS + 2u * (run))
+#define RANGES EYE.order.sort_runs
+#define RANGE_PLACE(run) (EYE.order.sort_runs * DIGITS + 2u * (run))
 
 #endif

@@ -26,7 +26,7 @@ void main() {
         return; // this pass is skipped
     }
     uint total = 0u;
-    for (uint run = 0u; run < FRAME.order.sort_runs; run++) {
+    for (uint run = 0u; run < EYE.order.sort_runs; run++) {
         total += histogram.at[run * DIGITS + d];
     }
     totals[d] = total;
@@ -35,7 +35,7 @@ void main() {
     for (uint before = 0u; before < d; before++) {
         place += totals[before];
     }
-    for (uint run = 0u; run < FRAME.order.sort_runs; run++) {
+    for (uint run = 0u; run < EYE.order.sort_runs; run++) {
         uint count = histogram.at[run * DIGITS + d];
         histogram.at[run * DIGITS + d] = place;
         place += count;

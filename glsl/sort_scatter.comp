@@ -22,7 +22,7 @@ void main() {
     uint number = KEY_DIGIT;
     uint base = KEY_BASE;
     bool is_first = number == 0u; // the splats are in their own order
-    uvec2 bounds = run_bounds(run, FRAME.order.sort_runs, KEY_COUNT);
+    uvec2 bounds = run_bounds(run, EYE.order.sort_runs, KEY_COUNT);
     for (uint i = bounds.x; i < bounds.y; i++) {
         uint key = is_first ? depth_keys.at[i] : keys.at[i];
         uint slot = run * DIGITS + digit(key - base, number);

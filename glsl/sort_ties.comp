@@ -143,7 +143,7 @@ uint next_tie(uint i, uint end, uint count) {
 void main() {
     uint local = gl_LocalInvocationIndex;
     uint count = KEY_COUNT;
-    uvec2 bounds = run_bounds(gl_GlobalInvocationID.x, FRAME.order.sort_runs, count);
+    uvec2 bounds = run_bounds(gl_GlobalInvocationID.x, EYE.order.sort_runs, count);
     uint i = bounds.x;
     // Ties that begin in the run before belong to that one.
     while (i < bounds.y && i > 0u && keys.at[i] == keys.at[i - 1u]) {

@@ -27,12 +27,12 @@ void main() {
     for (uint row = 0u; row < rows; row++) {
         span_counts.at[run * rows + row] = 0u;
     }
-    uvec2 bounds = run_bounds(run, FRAME.tiles.span_runs, counts.at[0].visible + counts.at[0].cutoff);
+    uvec2 bounds = run_bounds(run, EYE.tiles.span_runs, counts.at[0].visible + counts.at[0].cutoff);
     uint found = 0u;
     // Pairs beyond the room need no counting: quads are drawn, and the next frame has more room.
     uint splats_ahead[AHEAD];
     uint ahead_x[AHEAD];
-    for (uint i = bounds.x; i < bounds.y && found <= FRAME.room.pair_capacity; i++) {
+    for (uint i = bounds.x; i < bounds.y && found <= EYE.room.pair_capacity; i++) {
         uint turn = (i - bounds.x) % AHEAD;
         if (turn == 0u) {
             for (uint k = 0u; k < AHEAD; k++) {

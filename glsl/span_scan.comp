@@ -20,7 +20,7 @@ shared uint totals[ROWS];
 void main() {
     uint local = gl_LocalInvocationIndex;
     // Without splats nothing was counted, and the counts are another frame's.
-    uint runs = counts.at[0].mesh_groups.w == 0u ? 0u : FRAME.tiles.span_runs;
+    uint runs = counts.at[0].mesh_groups.w == 0u ? 0u : EYE.tiles.span_runs;
     uint own_pairs = 0u;
     for (uint run = local; run < runs; run += ROWS) {
         own_pairs = capped_sum(own_pairs, span_counts.at[pairs_place(run)]);
@@ -59,8 +59,8 @@ void main() {
     if (local == 0u) {
         row_begins.at[rows] = begin;
         bool tiled = decide_room(pairs);
-        counts.at[0].span_groups = tiled ? groups(FRAME.tiles.span_runs, SPAN_GROUP_SIZE) : uvec4(0u);
-        counts.at[0].part_groups = tiled ? groups(rows * FRAME.tiles.row_parts, ROW_GROUP_SIZE) : uvec4(0u);
+        counts.at[0].span_groups = tiled ? groups(EYE.tiles.span_runs, SPAN_GROUP_SIZE) : uvec4(0u);
+        counts.at[0].part_groups = tiled ? groups(rows * EYE.tiles.row_parts, ROW_GROUP_SIZE) : uvec4(0u);
         counts.at[0].row_groups = tiled ? groups(rows, ROW_GROUP_SIZE) : uvec4(0u);
     }
 }

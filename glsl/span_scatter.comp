@@ -29,7 +29,7 @@ void put(uint slot, uvec2 columns, uint splat) {
 void main() {
     uint run = gl_GlobalInvocationID.x;
     uint rows = tile_rows();
-    uvec2 bounds = run_bounds(run, FRAME.tiles.span_runs, counts.at[0].visible + counts.at[0].cutoff);
+    uvec2 bounds = run_bounds(run, EYE.tiles.span_runs, counts.at[0].visible + counts.at[0].cutoff);
     for (uint i = bounds.x; i < bounds.y; i++) {
         uint splat = order.at[i];
         uint origin = mask_origins.at[i];

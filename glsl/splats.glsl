@@ -8,7 +8,7 @@
 
 // True where the parts lie apart.
 bool splats_lie_apart() {
-    return FRAME.order.sort_runs == 0u;
+    return EYE.order.sort_runs == 0u;
 }
 
 uint splat_place(uint splat) {
@@ -16,11 +16,11 @@ uint splat_place(uint splat) {
 }
 
 uint curvature_place(uint splat) {
-    return splats_lie_apart() ? 3u * FRAME.scene.gaussian_count + splat : 4u * splat + 3u;
+    return splats_lie_apart() ? 3u * CUT.scene.gaussian_count + splat : 4u * splat + 3u;
 }
 
 uvec2 depth_place(uint splat) {
-    return splats_lie_apart() ? uvec2(4u * FRAME.scene.gaussian_count + splat / 4u, splat % 4u) : uvec2(4u * splat + 3u, 3u);
+    return splats_lie_apart() ? uvec2(4u * CUT.scene.gaussian_count + splat / 4u, splat % 4u) : uvec2(4u * splat + 3u, 3u);
 }
 
 #define SPLAT_CENTRE(splat) splats.at[splat_place(splat)]

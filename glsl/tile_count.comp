@@ -14,7 +14,7 @@ void main() {
         return;
     }
     uint first = columns_place(part);
-    for (uint column = 0u; column <= FRAME.tiles.tile_columns; column++) {
+    for (uint column = 0u; column <= EYE.tiles.tile_columns; column++) {
         column_counts.at[first + column] = 0u;
     }
     uvec2 bounds = part_bounds(part);
@@ -25,10 +25,10 @@ void main() {
     }
     uint here = 0u;
     uint pairs = 0u;
-    for (uint column = 0u; column < FRAME.tiles.tile_columns; column++) {
+    for (uint column = 0u; column < EYE.tiles.tile_columns; column++) {
         here += column_counts.at[first + column];
         column_counts.at[first + column] = here;
         pairs += here;
     }
-    column_counts.at[first + FRAME.tiles.tile_columns] = pairs;
+    column_counts.at[first + EYE.tiles.tile_columns] = pairs;
 }

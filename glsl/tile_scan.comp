@@ -14,18 +14,18 @@ void main() {
         return;
     }
     uint place = 0u;
-    for (uint part = 0u; part < row * FRAME.tiles.row_parts; part++) {
-        place += column_counts.at[columns_place(part) + FRAME.tiles.tile_columns];
+    for (uint part = 0u; part < row * EYE.tiles.row_parts; part++) {
+        place += column_counts.at[columns_place(part) + EYE.tiles.tile_columns];
     }
-    for (uint column = 0u; column < FRAME.tiles.tile_columns; column++) {
-        tile_begins.at[row * FRAME.tiles.tile_columns + column] = place;
-        for (uint part = row * FRAME.tiles.row_parts; part < (row + 1u) * FRAME.tiles.row_parts; part++) {
+    for (uint column = 0u; column < EYE.tiles.tile_columns; column++) {
+        tile_begins.at[row * EYE.tiles.tile_columns + column] = place;
+        for (uint part = row * EYE.tiles.row_parts; part < (row + 1u) * EYE.tiles.row_parts; part++) {
             uint count = column_counts.at[columns_place(part) + column];
             column_counts.at[columns_place(part) + column] = place;
             place += count;
         }
     }
     if (row + 1u == tile_rows()) {
-        tile_begins.at[FRAME.tiles.tile_count] = place;
+        tile_begins.at[EYE.tiles.tile_count] = place;
     }
 }

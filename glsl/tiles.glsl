@@ -87,54 +87,69 @@ bool hide(float far, inout float alpha[ROWS]) {
     return behind;
 }
 
-// `may_be_cut` is a constant where it is called, and false where nothing weighs splats.
-void blend(Seen splat, Record record, vec2 delta, bool may_be_cut) {
-    float u = splat.centre_conic.z * delta.x;
-    float v = splat.centre_conic.w * delta.x;
-    float alpha[ROWS];
+// A splat's alphas in the column, without those of the pixels in which it is hidden, and the weights of one that is whole. False where
+// the column is done: the splat is hidden in all pixels, and so is all that follows.
+bool opacities(Seen splat, float u, float v, out float alpha[ROWS], out float weight[ROWS]) {
     for (uint row = 0u; row < ROWS; row++) {
+        weight[row] = WEIGHT_WHOLE;
         float y = pixel_centre.y + float(row) - splat.centre_conic.y;
         float w = v + splat.conic_opacity.x * y;
-        float a = min(FRAME.tiles.alpha_max, splat.conic_opacity.y * exp(-0.5 * (u * u + w * w)));
+        float a = min(EYE.tiles.alpha_max, splat.conic_opacity.y * exp(-0.5 * (u * u + w * w)));
         alpha[row] = a >= ALPHA_MIN ? a : 0.0;
     }
     // Where the sort has compared whole depths, all that follows is hidden too.
-    bool are_sorted = FRAME.order.key_shift == 0u && FRAME.order.by_distance == 0u;
+    bool are_sorted = EYE.order.key_shift == 0u && EYE.order.by_distance == 0u;
     done = DEPTH_FORM != DEPTH_NONE && hide(splat.far, alpha) && are_sorted;
-    if (!done) {
-        float weight[ROWS];
-        if (SHOW == SHOW_WEIGHT) {
-            for (uint row = 0u; row < ROWS; row++) {
-                weight[row] = WEIGHT_WHOLE;
+    return !done;
+}
+
+void add(Seen splat, float alpha[ROWS], float weight[ROWS]) {
+    float most = 0.0;
+    for (uint row = 0u; row < ROWS; row++) {
+        float added = transmittance[row] * alpha[row];
+        if (SHOW == SHOW_COUNT) {
+            // A column goes on until all of its pixels are saturated.
+            bool counts = alpha[row] >= ALPHA_MIN && transmittance[row] >= EYE.tiles.transmittance_min;
+            sum[row] += vec3(counts ? 1.0 : 0.0);
+        } else if (SHOW == SHOW_MEAN) {
+            sum[row] += alpha[row] * splat.colour;
+            alphas[row] += alpha[row];
+        } else if (SHOW == SHOW_STRONGEST) {
+            // Of equal ones the first counts, which is in front.
+            if (added > alphas[row]) {
+                alphas[row] = added;
+                sum[row] = splat.colour;
             }
+        } else {
+            sum[row] += added * (SHOW == SHOW_WEIGHT ? weight_colour(weight[row]) : splat.colour);
         }
-        if (may_be_cut && CLIP_MODE >= MODE_RARA && splat.linear.x < Z_RANGE) {
+        transmittance[row] -= added;
+        most = max(most, transmittance[row]);
+    }
+    // A mean takes all, in whatever order.
+    done = SHOW != SHOW_MEAN && most < EYE.tiles.transmittance_min;
+}
+
+void blend(Seen splat, vec2 delta) {
+    float alpha[ROWS];
+    float weight[ROWS];
+    if (opacities(splat, splat.centre_conic.z * delta.x, splat.centre_conic.w * delta.x, alpha, weight)) {
+        add(splat, alpha, weight);
+    }
+}
+
+// The same of a splat that may be cut. Drivers inline functions before they look at what is constant: a flag would cost the time to
+// compile all of this twice.
+void blend_cut(Seen splat, Record record, vec2 delta) {
+    float u = splat.centre_conic.z * delta.x;
+    float v = splat.centre_conic.w * delta.x;
+    float alpha[ROWS];
+    float weight[ROWS];
+    if (opacities(splat, u, v, alpha, weight)) {
+        if (CLIP_MODE >= MODE_RARA && splat.linear.x < Z_RANGE) {
             weigh(splat, record, delta, vec2(u, v + splat.conic_opacity.x * delta.y), alpha, weight);
         }
-        float most = 0.0;
-        for (uint row = 0u; row < ROWS; row++) {
-            float added = transmittance[row] * alpha[row];
-            if (SHOW == SHOW_COUNT) {
-                // A column goes on until all of its pixels are saturated.
-                bool counts = alpha[row] >= ALPHA_MIN && transmittance[row] >= FRAME.tiles.transmittance_min;
-                sum[row] += vec3(counts ? 1.0 : 0.0);
-            } else if (SHOW == SHOW_MEAN) {
-                sum[row] += alpha[row] * splat.colour;
-                alphas[row] += alpha[row];
-            } else if (SHOW == SHOW_STRONGEST) {
-                // Of equal ones the first, which is in front.
-                if (added > alphas[row]) {
-                    alphas[row] = added;
-                    sum[row] = splat.colour;
-                }
-            } else {
-                sum[row] += added * (SHOW == SHOW_WEIGHT ? weight_colour(weight[row]) : splat.colour);
-            }
-            transmittance[row] -= added;
-            most = max(most, transmittance[row]);
-        }
-        // A mean takes all, in whatever order.
-        done = SHOW != SHOW_MEAN && most < FRAME.tiles.transmittance_min;
+        add(splat, alpha, weight);
     }
 }
 
@@ -176,23 +191,23 @@ Seen load(uint number, float x, vec2 tile_middle, out Record record) {
 uint workgroup_tile() {
     if (LISTED) {
         uint place = LINEAR_GROUP;
-        if (place >= tile_list.at[FRAME.tiles.tile_count + push.params.list]) {
+        if (place >= tile_list.at[EYE.tiles.tile_count + push.params.list]) {
             return NO_TILE;
         }
-        return tile_list.at[push.params.list == 0u ? place : FRAME.tiles.tile_count - 1u - place];
+        return tile_list.at[push.params.list == 0u ? place : EYE.tiles.tile_count - 1u - place];
     }
     // Tiles follow each other down the columns of a strip, not along the picture's rows: what a splat's next tile needs
     // of it is then still in the cache, whichever neighbour that is.
     uvec2 at = uvec2(gl_WorkGroupID.x / STRIP_ROWS, gl_WorkGroupID.y * STRIP_ROWS + gl_WorkGroupID.x % STRIP_ROWS);
-    return at.y * FRAME.tiles.tile_columns + at.x;
+    return at.y * EYE.tiles.tile_columns + at.x;
 }
 
 void main() {
     uint tile = workgroup_tile();
-    if (tile >= FRAME.tiles.tile_count || (RECLIPPED && dirty.at[tile] == 0u)) {
+    if (tile >= EYE.tiles.tile_count || (RECLIPPED && dirty.at[tile] == 0u)) {
         return;
     }
-    uvec2 tile_at = uvec2(tile % FRAME.tiles.tile_columns, tile / FRAME.tiles.tile_columns);
+    uvec2 tile_at = uvec2(tile % EYE.tiles.tile_columns, tile / EYE.tiles.tile_columns);
     uint begin = tile_begins.at[tile];
     uint end = tile_begins.at[tile + 1u];
     if (begin == end) {
@@ -225,12 +240,12 @@ void main() {
             vec2 delta = pixel_centre - splat.centre_conic.xy;
             if (WHOLE_ALONE && splat.linear.x == Z_WHOLE) {
                 if (!done) {
-                    blend(splat, record, delta, false);
+                    blend(splat, delta);
                 }
             } else {
                 record = weight_taken_over(i, splat);
                 if (!done && !((RECLIPPED || CLIP_MODE >= MODE_RARA) && is_away(splat, delta))) {
-                    blend(splat, record, delta, true);
+                    blend_cut(splat, record, delta);
                 }
             }
         }

@@ -4,7 +4,7 @@
 #define RARA_TYPES
 #include "limits.glsl"
 
-// The constants of a frame: a struct for each reason to change. Whether a frame may take over what the one before has
+// The constants of a cut and of a frame: a struct for each reason to change. Whether a frame may take over what the one before has
 // computed is decided by comparing whole structs (src/passes/work.rs), so that a constant belongs where its change has the
 // same consequences as that of its neighbours.
 
@@ -16,7 +16,21 @@ struct SceneData {
     uint layer_count; // layers of the scene, at least one
 };
 
-// The picture of an eye. Where the eye stands is in each layer's views, in the layer's own space.
+// The values that all layers' regions share.
+struct RegionData {
+    uint mode; // MODE_*
+    uint trace_all; // 1: every Gaussian in view is cutoff
+    float sigma; // rara: the traced ellipsoid, standard deviations; else 0
+    uint pad; // unused
+};
+
+// The values that are constant in a cut: what a clip keeps of a scene, whatever eye sees it.
+struct CutData {
+    SceneData scene; // the scene's sizes
+    RegionData region; // what the layers' regions have in common
+};
+
+// The picture of an eye. Where the eye stands is in each layer's view, in the layer's own space.
 struct ViewData {
     vec4 focal; // fx, fy, px, or px a unit of the scene in an orthographic view; cx, cy, px
     vec4 slope_bounds; // lowest and highest x/z, lowest and highest y/z at which the Jacobian is evaluated
@@ -60,26 +74,22 @@ struct WeightData {
     uint form; // FORM_*
     float beam_switch; // sigma_max / Z above which the perspective-exact form is used
     uint cut_stride; // vec4s of a cutoff record
-    uint pad; // unused
+    uint long_strides; // room for long records behind those of all Gaussians, each a cut_stride
 };
 
-// The values that all layers' regions share.
-struct RegionData {
-    uint mode; // MODE_*
-    uint trace_all; // 1: every Gaussian in view is cutoff
-    float sigma; // rara: the traced ellipsoid, standard deviations; else 0
-    uint pad; // unused
-};
-
-// The values that are constant in a frame.
-struct FrameData {
-    SceneData scene; // the scene's sizes
-    ViewData views[MAX_VIEWS]; // an eye's each
+// The values that are constant for an eye in a frame.
+struct EyeData {
+    ViewData view; // the picture
     OrderData order; // the sort
     TilesData tiles; // the tiles
     RoomData room; // the room that there is
     WeightData weight; // the weights of what is cut
-    RegionData region; // what the layers' regions have in common
+};
+
+// The values that are constant in a frame.
+struct FrameData {
+    CutData cut; // the scene and what is kept of it
+    EyeData eye; // the eye that sees it
 };
 
 // An eye as a layer sees it that is placed in the scene. The rows are the layer's rotation times its unit, so that what
@@ -114,11 +124,16 @@ struct LayerRegion {
     uint combined; // 1: splats are weighed as combinations of surfaces that may bend
 };
 
-// A layer of the scene in a frame: a struct for each reason to change, as above.
-struct LayerData {
-    LayerView views[MAX_VIEWS]; // where each eye is
+// A layer of the scene in a cut.
+struct CutLayer {
     LayerContent content; // its Gaussians
     LayerRegion region; // what is kept of them
+};
+
+// A layer of the scene in a frame.
+struct LayerData {
+    CutLayer cut; // what is kept of it
+    LayerView view; // where the eye is
 };
 
 // A surface of a region, in the units of the layer that it cuts.
@@ -179,9 +194,6 @@ struct FrameCounts {
     uint cutoff; // in view, cut
     uint invisible; // in view, wholly clipped away
     uint culled; // outside the view or too faint
-    uvec4 clip_groups; // indirect dispatch over the blocks that the clip may cut; w: how many
-    uvec4 classify_groups; // indirect dispatch over the blocks that neither view nor clip settles; w: how many
-    uvec4 compact_groups; // indirect dispatch over the blocks with splats; w: how many
     uvec4 project_groups; // indirect dispatch over the splats
     uvec4 cutoff_groups; // indirect dispatch over the cutoff Gaussians
     uvec4 recut_groups; // indirect dispatch over the splats that a moved clip changes; w: how many
@@ -203,7 +215,9 @@ struct FrameCounts {
     uint sort_base; // what the sort counts the splats' keys from
     uint sort_skipped; // passes of the sort, from the first, that their keys do without
     uint macro_pairs; // pairs of macro-tile and splat that have room; some of them may hold no tile
-    uint pad[3]; // unused
+    uint long_records; // cut splats that more surfaces cut than a record has room for
+    uint long_strides; // what their long records take; where there is less, they are weighed by what their records have room for
+    uint pad; // unused
 };
 
 const uint PROJECTION_PERSPECTIVE = 0u;

@@ -17,19 +17,16 @@ Sight line_of_sight(uint base, vec2 delta, vec2 pixel_centre) {
     return sight_through(cut_records.at[base], cut_records.at[base + 1u], cut_records.at[base + 2u], pixel, delta);
 }
 
-// The weight of mode `exact`, from the planes of a record.
-float exact_weight(uint base, uint flags, vec2 delta, vec2 pixel_centre) {
-    uint count = flags >> CUT_COUNT_SHIFT;
-    Sight s = line_of_sight(base, delta, pixel_centre);
-    float det = determinant(s);
-    if (!SEVERAL || count == 1u) {
-        bool far;
-        return phi(beam_z(s, det, cut_records.at[base + CUT_HEADER], far));
-    }
-    return combined(flags, several_weight(s, det, base, count));
+// The weight of several surfaces, or of one that bends. In mode `rara` none but combined records come here.
+float surfaces_weight(Sight s, uint base, uint flags, RecordSides sides) {
+    bool is_combined = COMBINED && (flags & CUT_COMBINED) != 0u;
+    float share = is_combined || LISTS_TOO || CLIP_MODE == MODE_RARA
+        ? combined_weight(s, base, flags, sides, push.params.sigma)
+        : several_weight(s, determinant(s), base, flags >> CUT_COUNT_SHIFT);
+    return is_combined ? share : combined(flags, share);
 }
 
-// The same with the camera inside the splat: only what is in front of the eye counts, as part and as whole. Such a splat
+// The weight of mode `exact` with the camera inside the splat: only what is in front of the eye counts, as part and as whole. Such a splat
 // is so large that the low-pass is nothing. The planes are thresholds in one variable along the ray: those that keep the
 // far side bound it from below, as the eye does, and the others from above.
 float front_weight(uint base, uint flags, vec2 delta, vec2 pixel_centre) {
@@ -119,22 +116,27 @@ float terms_weight(uint base, vec2 uv) {
 float cut_weight(uint cut, vec2 delta, vec2 uv, vec2 pixel_centre) {
     uint base = cut * push.params.cut_stride;
     uint flags = to_uint(cut_records.at[base].w);
-    if (COMBINED && (flags & CUT_COMBINED) != 0u) {
-        return combined_weight(line_of_sight(base, delta, pixel_centre), base, flags, all_cutting(), push.params.sigma);
-    }
-    if (CLIP_MODE == MODE_RARA) {
+    bool is_combined = COMBINED && (flags & CUT_COMBINED) != 0u;
+    if (CLIP_MODE == MODE_RARA && !is_combined) {
         return chord_weight(base, flags, delta, pixel_centre);
     }
-    if ((flags & CUT_FRONT) != 0u) {
-        return front_weight(base, flags, delta, pixel_centre);
+    Sight s = line_of_sight(base, delta, pixel_centre);
+    if (CLIP_MODE == MODE_EXACT && !is_combined) {
+        if ((flags & CUT_FRONT) != 0u) {
+            return front_weight(base, flags, delta, pixel_centre);
+        }
+        if (COMBINED && (flags & CUT_TERMS) != 0u) {
+            return terms_weight(base, uv);
+        }
+        if ((flags & CUT_CURVE) != 0u) {
+            return phi(curve_z(curve_of(cut_records.at[base], cut_records.at[base + 1u], cut_records.at[base + 2u], cut_records.at[base + 3u]), uv));
+        }
+        if (!SEVERAL || flags >> CUT_COUNT_SHIFT == 1u) {
+            bool far;
+            return phi(beam_z(s, determinant(s), cut_records.at[base + CUT_HEADER], far));
+        }
     }
-    if (COMBINED && (flags & CUT_TERMS) != 0u) {
-        return terms_weight(base, uv);
-    }
-    if ((flags & CUT_CURVE) != 0u) {
-        return phi(curve_z(curve_of(cut_records.at[base], cut_records.at[base + 1u], cut_records.at[base + 2u], cut_records.at[base + 3u]), uv));
-    }
-    return exact_weight(base, flags, delta, pixel_centre);
+    return surfaces_weight(s, base, flags, all_cutting());
 }
 
 // The paper scales alpha (eq. 12). The default for `exact` scales optical depth, -ln(1 - alpha): then complementary

@@ -23,7 +23,7 @@ pub mod types;
 pub use rara_scene::camera_files;
 pub use rara_scene::clip;
 
-/// Vulkan without a single Gaussian: the device that is opened or lent, its memory, and the pipelines that are kept.
+/// The Vulkan device that rara opens or that a host lends, its memory, and its compiled pipelines.
 pub mod gpu {
     pub use rara_gpu::{
         AdoptDesc, Bindings, DepthImage, Device, DeviceDesc, DeviceInfo, DeviceShape, Features,
@@ -32,24 +32,29 @@ pub mod gpu {
     };
 }
 
-/// Files to Gaussians and back, and synthetic scenes.
+/// Scenes: loading and saving Gaussians, and generating synthetic ones.
 pub mod scene {
     #[cfg(feature = "formats")]
     pub use rara_scene::{
-        Annotations, Format, LoadReport, Remark, SaveOptions, SceneFile, load, load_from,
-        load_from_with, load_with, save, save_ply, save_with, saved_format,
+        Annotations, FileLayer, Format, LoadOptions, LoadReport, Remark, SaveOptions, SceneFile,
+        file_layers, load, load_from, load_from_with, load_layer, load_with, save, save_ply,
+        save_with, saved_format, stated_up,
     };
     pub use rara_scene::{
-        Attribute, Bounds, Comparison, GaussianArrays, Gaussians, Kind, Layer, LayerState, Part,
-        Predicate, Property, Scene, cross_section, extent_along, generate, sh_coefficients,
+        Attribute, Axis, Bounds, Comparison, GaussianArrays, Gaussians, Kind, Layer, LayerState,
+        Part, Predicate, Property, Scene, cross_section, extent_along, generate, sh_coefficients,
     };
+    #[cfg(all(feature = "formats", feature = "json"))]
+    pub use rara_scene::{layers, trained_folder};
 }
 
-/// The versions that this crate's interface is made of.
+/// The crates whose types the interface of this crate uses, in the versions that it uses.
 pub use {ash, glam, gpu_allocator};
 
 #[cfg(feature = "bake")]
 pub use bake::{BakeCounts, BakeSettings, BakedGaussians, bake, bake_layer};
+#[doc(hidden)]
+pub use passes::{Lines, PictureLine};
 pub use passes::{SceneBuffers, SceneLayer, Staging};
 pub use rara_base::error::{Error, Result};
 pub use rara_base::stats::{Counts, PassStatistics};
@@ -61,15 +66,13 @@ pub use rara_scene::PngCompression;
 pub use rara_scene::{
     Aov, Bounds, Camera, Channel, Clip, ClipOp, Cue, Cues, Decay, DepthMap, ExactForm,
     GaussianArrays, Gaussians, Layer, LayerState, Miss, Mode, Ndc, PhiForm, Picture, Placement,
-    Plane, Precision, Preset, Projection, Quadric, Raster, Scene, Settings, ShFormat, Shape, Show,
-    SortBy, Surface, TargetFormat, Training,
+    Plane, Precision, Preset, Projection, Quadric, Raster, Scene, Setting, SettingKind, Settings,
+    ShFormat, Shape, Show, SortBy, Surface, TargetFormat, Training,
 };
 pub use renderer::{
-    ColorSpace, ConfiguredFrame, DepthDesc, ExpectedDepthDesc, FrameLimits, Pick, PickTicket,
-    Picker, Picks, PreparedFrame, Renderer, RendererDesc,
+    ColorSpace, ConfiguredFrame, Cut, DepthDesc, ExpectedDepthDesc, FrameLimits, Kept, Outcome,
+    Pick, PickTicket, Picker, Picks, PreparedFrame, Renderer, RendererDesc,
 };
 pub use session::{Headless, HeadlessDesc, StoredPicture};
-#[cfg(feature = "view")]
-pub use session::{Line, Panel, Redraw, Windowed};
 pub use stats::{FrameStats, PassTime, RasterChoice};
 pub use trace::Trace;

@@ -12,7 +12,7 @@ pub struct PassTime {
     pub ms: f64,
 }
 
-/// Which way of turning splats into pixels a frame took.
+/// The raster path that a frame took, and the reason.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "json", derive(serde::Serialize))]
 #[non_exhaustive]

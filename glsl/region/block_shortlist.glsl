@@ -4,16 +4,25 @@
 #include "block.glsl"
 
 #define HAS_PARTS SHORTLISTED
-#define PART_ENTRIES SHORTLIST_SURFACES
 #include "region/parts.glsl"
+
+// The place of the shortlist that is written.
+uint written_shortlist;
+
+uint listed_operators(uint entry) {
+    return shortlists.at[written_shortlist + 2u + 2u * entry];
+}
+
+void list_operators(uint entry, uint operators) {
+    shortlists.at[written_shortlist + 2u + 2u * entry] = operators;
+}
 
 void write_shortlist(uint block, Block bounds) {
     vec3 middle = block_middle(bounds);
     vec3 half_size = block_half(bounds);
     float support = SHORTLIST_WIDENING * block_support(bounds, 1.0);
-    uint place = block * SHORTLIST_WORDS;
+    written_shortlist = block * SHORTLIST_WORDS;
     uint first_part = gl_LocalInvocationIndex * PART_DEPTH;
-    uint first_entry = gl_LocalInvocationIndex * SHORTLIST_SURFACES;
     uint depth = 0u;
     uint entries = 0u;
     bool has_room = !cuts_all();
@@ -25,18 +34,15 @@ void write_shortlist(uint block, Block bounds) {
         if (side == SIDE_CUTOFF) {
             has_room = entries < SHORTLIST_SURFACES;
             if (has_room) {
-                shortlists.at[place + 1u + 2u * entries] = surface;
-                entry_operators[first_entry + entries] = 0u;
+                shortlists.at[written_shortlist + 1u + 2u * entries] = surface;
+                list_operators(entries, 0u);
                 part = 2u + entries++;
             }
         }
-        push_part(part, surfaces.at[surface].operators, first_part, first_entry, depth, entries);
-    }
-    for (uint i = 0u; i < entries; i++) {
-        shortlists.at[place + 2u + 2u * i] = entry_operators[first_entry + i];
+        push_part(part, surfaces.at[surface].operators, first_part, depth, entries);
     }
     uint side = parts[first_part] == 0u ? SIDE_INVISIBLE : parts[first_part] == 1u ? SIDE_VISIBLE : SIDE_CUTOFF;
-    shortlists.at[place] = has_room ? entries << 2 | side : ALL_SURFACES;
+    shortlists.at[written_shortlist] = has_room ? entries << 2 | side : ALL_SURFACES;
 }
 
 #endif

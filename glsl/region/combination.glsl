@@ -1,13 +1,20 @@
-// The share of a splat that the surfaces of a combined record keep together, whatever they are and however they combine.
-// Included after the buffer `cut_records` and the constants of weight_constants.glsl are declared. Twin:
-// src/reference/region/combination.rs and crossing.rs.
+// The share of a splat that the surfaces of a record keep together, whatever they are and however they combine. Included after the buffer
+// `cut_records` and the constants of weight_constants.glsl are declared. Twin: src/reference/region/combination.rs and crossing.rs.
 #ifndef RARA_REGION_COMBINATION
 #define RARA_REGION_COMBINATION
 #include "region/answers.glsl"
 #include "region/crossing.glsl"
 #include "region/entry.glsl"
-#include "orthant.glsl"
-#include "tail.glsl"
+#include "region/lines.glsl"
+#include "region/share.glsl"
+
+// True where pipelines for surfaces that bend weigh lists by the same code: CPU drivers compile half as long then. On GPUs that code would
+// need a third more registers.
+#ifdef RARA_SUBGROUP
+#define LISTS_TOO COMBINED
+#else
+#define LISTS_TOO false
+#endif
 
 // The sides of a record's surfaces in all pixels that are looked at, a bit for each surface.
 struct RecordSides {
@@ -17,6 +24,13 @@ struct RecordSides {
 
 RecordSides all_cutting() {
     return RecordSides(~0u, 0u);
+}
+
+// Surfaces whose sides are known, one a bit. Any beyond count as cutting.
+const uint SIDES_KNOWN = 32u;
+
+bool is_cutting(RecordSides sides, uint i) {
+    return (MANY && i >= SIDES_KNOWN) || (sides.cutting >> i & 1u) != 0u;
 }
 
 // Where at most two surfaces of a record cut a tile: these, and for each combination of their sides whether the region keeps that,
@@ -83,100 +97,6 @@ float bent_share(Line line, UnitSurface surface) {
     return share;
 }
 
-// The stretch of a line between a surface's crossings, counted from the mean, and whether what is kept lies in it.
-struct Stretch {
-    float start, end;
-    bool between;
-};
-
-Stretch stretch_of(Line line, UnitSurface surface) {
-    float moved;
-    Crossed crossing = crossed(line, surface, moved);
-    bool far = keeps_far(dot(crossing.gradient, line.s.c), crossing.gradient);
-    float first = far ? -crossing.at.z : crossing.at.z;
-    if (crossing.at.other == NO_CROSSING) {
-        return far ? Stretch(first, NO_CROSSING, true) : Stretch(-NO_CROSSING, first, true);
-    }
-    float second = far ? crossing.at.other : -crossing.at.other;
-    return Stretch(min(first, second), max(first, second), crossing.at.between);
-}
-
-// What a stretch of the line counts.
-const uint MEASURE_MASS = 0u;
-const uint MEASURE_LENGTH = 1u;
-const uint MEASURE_FRONT = 2u;
-
-float measure_to(uint measure, float t, float front) {
-    if (measure == MEASURE_LENGTH) {
-        return t;
-    }
-    if (measure == MEASURE_FRONT) {
-        return t >= NO_CROSSING ? 1.0 : 1.0 - tail_ratio(-t, front);
-    }
-    return phi(t);
-}
-
-// The measure of what the surfaces keep of a line from `start` to `end`, one stretch between crossings after the other.
-float measured(Line line, uint base, uint count, float start, float end, uint measure, float front) {
-    float total = 0.0;
-    float before = measure_to(measure, start, front);
-    for (float t = start; t < end;) {
-        float next = end;
-        uint stack = 0u;
-        for (uint i = 0u; i < count; i++) {
-            Stretch stretch = stretch_of(line, entry_of(base, i));
-            next = stretch.start > t ? min(next, stretch.start) : next;
-            next = stretch.end > t ? min(next, stretch.end) : next;
-            // The side of what comes next on the line.
-            bool keeps = (t >= stretch.start && t < stretch.end) == stretch.between;
-            stack = answered(stack, keeps, operators_of(base, i));
-        }
-        float here = measure_to(measure, next, front);
-        total += (stack & 1u) != 0u ? here - before : 0.0;
-        before = here;
-        t = next;
-    }
-    return total;
-}
-
-// The share of the variance across a line that lines beside it stand for. They are at 0 and 1.5 deviations: Gauss and
-// Hermite's nodes, for that share.
-const float BY_NODES = 0.75;
-const float BESIDE = 1.5;
-
-// A vector's variance across a line, and the deviation that it has there.
-float across(Line line, vec3 v, out vec3 deviation) {
-    vec3 direction = direction_of(line);
-    vec3 moved = spread(line, v) - direction * dot(direction, v);
-    float variance = dot(v, moved);
-    deviation = variance > 0.0 ? moved * inversesqrt(variance) : vec3(0.0);
-    return variance > 0.0 ? variance : 1.0;
-}
-
-// The same of a line and of lines beside it, which stand for the variance across it.
-float measured_widely(Line line, uint base, uint count, float start, float end, uint measure, float front) {
-    bool is_wide = measure == MEASURE_MASS;
-    vec3 p = dot(line.s.b1, line.s.b1) < dot(line.s.b2, line.s.b2) ? line.s.b2 : line.s.b1;
-    p /= max(length(p), 1e-30);
-    vec3 q = cross(direction_of(line), p);
-    vec3 first;
-    float variance = across(line, p, first);
-    q -= p * (dot(q, first) * inversesqrt(variance));
-    vec3 second;
-    across(line, q, second);
-    vec3 middle = line.mean;
-    line.lateral = is_wide ? 1.0 - BY_NODES : 1.0;
-    float share = 0.0;
-    int nodes = is_wide ? 9 : 1;
-    for (int node = 0; node < nodes; node++) {
-        vec2 at = is_wide ? BESIDE * vec2(node / 3 - 1, node % 3 - 1) : vec2(0.0);
-        line.mean = middle + at.x * first + at.y * second;
-        float weight = (at.x == 0.0 ? 2.0 / 3.0 : 1.0 / 6.0) * (at.y == 0.0 ? 2.0 / 3.0 : 1.0 / 6.0);
-        share += (is_wide ? weight : 1.0) * measured(line, base, count, start, end, measure, front);
-    }
-    return share;
-}
-
 // The answers of a region for eight combinations of sides, a byte on a stack of eight.
 uvec2 bytes_answered(uvec2 stack, uint answers, uint operators) {
     stack = uvec2(stack.x << 8 | answers, stack.y << 8 | stack.x >> 24);
@@ -204,34 +124,59 @@ float share_of_answers(uint answers, float p, float q, float r, vec3 pairs, floa
         + bit_of(answers, 0u) * (1.0 - p - q - r + pairs.x + pairs.y + pairs.z - all);
 }
 
-// The share of a single surface by mode `exact`, from its crossing.
-float share_of_surface(Line line, UnitSurface surface, Crossed crossing, float moved) {
-    if (moved > 0.0) {
-        return bent_share(line, surface);
-    }
+// The share of a single surface that bends little by mode `exact`, from its crossing.
+float share_of_crossing(Crossed crossing) {
     if (crossing.at.other != NO_CROSSING) {
         return share_of_two(crossing.at.z, crossing.at.other, crossing.at.between);
     }
     return abs(crossing.at.z) < PHI_ONE ? phi(crossing.at.z) : crossing.at.z > 0.0 ? 1.0 : 0.0;
 }
 
-// The share by mode `exact`, by the sides of at most three open crossings. `open` is how many there are.
-float share_of_sides(Line line, uint base, uint count, RecordSides sides, out uint open) {
+// Where a plane of a list is crossed.
+Crossed crossed_plane(Line line, vec4 half_space) {
+    bool far;
+    Crossed crossing;
+    crossing.at.z = beam_z(line.s, line.det, half_space, far);
+    crossing.at.other = NO_CROSSING;
+    crossing.gradient = half_space.xyz;
+    return crossing;
+}
+
+// The share by mode `exact`, by the sides of at most three open crossings. `open` is how many there are, and more than three where a
+// surface that bends much is one of several. The surfaces of a list are planes, all of which keep together.
+float share_of_sides(Line line, uint base, uint count, bool is_list, RecordSides sides, out uint open) {
     open = 0u;
+    if (!SEVERAL) {
+        UnitSurface surface = entry_of(base, 0u);
+        float moved;
+        Crossed crossing = crossed(line, surface, moved);
+        return is_bent(crossing, moved) ? bent_share(line, surface) : share_of_crossing(crossing);
+    }
+    uint bent = count;
     uvec2 stack = uvec2(0u);
     Threshold t0;
     Threshold t1;
     Threshold t2;
     for (uint i = 0u; i < count; i++) {
-        if ((sides.cutting >> i & 1u) == 0u) {
-            stack = bytes_answered(stack, (sides.visible >> i & 1u) != 0u ? 0xffu : 0u, operators_of(base, i));
+        uint operators = is_list ? min(i, 1u) : operators_of(base, i); // of a list one `and` for each but the first
+        Crossed crossing;
+        if (is_list) {
+            crossing = crossed_plane(line, plane_of(base, i));
+        } else if (!is_cutting(sides, i)) {
+            stack = bytes_answered(stack, (sides.visible >> i & 1u) != 0u ? 0xffu : 0u, operators);
             continue;
-        }
-        UnitSurface surface = entry_of(base, i);
-        float moved;
-        Crossed crossing = crossed(line, surface, moved);
-        if (count == 1u) {
-            return share_of_surface(line, surface, crossing, moved);
+        } else {
+            float moved;
+            crossing = crossed(line, entry_of(base, i), moved);
+            if (count == 1u && moved == 0.0) {
+                return share_of_crossing(crossing);
+            }
+            if (is_bent(crossing, moved)) {
+                stack = bytes_answered(stack, SIDE_PATTERN[0], operators);
+                bent = i;
+                open++;
+                continue;
+            }
         }
         uint pattern = 0u;
         for (uint side = 0u; side < (crossing.at.other == NO_CROSSING ? 1u : 2u); side++) {
@@ -239,7 +184,7 @@ float share_of_sides(Line line, uint base, uint count, RecordSides sides, out ui
             uint here = z > 0.0 ? 0xffu : 0u;
             if (abs(z) < PHI_ONE) {
                 vec3 a = side == 0u ? crossing.gradient : crossing.other_gradient;
-                Threshold t = Threshold(z, keeps_far(dot(a, line.s.c), a), direction(line.s, a));
+                Threshold t = Threshold(z, direction(line.s, a));
                 if (open == 0u) {
                     t0 = t;
                 } else if (open == 1u) {
@@ -252,13 +197,16 @@ float share_of_sides(Line line, uint base, uint count, RecordSides sides, out ui
             }
             pattern = side == 0u ? here : crossing.at.between ? pattern & here : pattern | here;
         }
-        stack = bytes_answered(stack, pattern, operators_of(base, i));
+        stack = bytes_answered(stack, pattern, operators);
     }
     uint answers = stack.x & 0xffu;
+    if (bent < count && open > 1u) {
+        open = 4u;
+    }
     if (open == 0u || open > 3u) {
         return bit_of(answers, 0u);
     }
-    float p = phi(t0.z);
+    float p = bent < count ? bent_share(line, entry_of(base, bent)) : phi(t0.z);
     float q = 0.0;
     float r = 0.0;
     vec3 pairs = vec3(0.0); // of the first two, of the first and the third, of the last two
@@ -274,29 +222,28 @@ float share_of_sides(Line line, uint base, uint count, RecordSides sides, out ui
     return share_of_answers(answers, p, q, r, pairs, all);
 }
 
-// The share by mode `exact` that a tile's surfaces keep together. False where one of two is crossed twice.
+// The share by mode `exact` that a tile's surfaces keep together. False where one of two is crossed twice, or bends much.
 bool share_of_tile_surfaces(Line line, TileSurfaces surfaces, out float share) {
     float moved;
     Crossed first = crossed(line, surfaces.first, moved);
-    if (surfaces.answers == FIRST_KEEPS) {
-        share = share_of_surface(line, surfaces.first, first, moved);
-        return true;
+    if (!SEVERAL || surfaces.answers == FIRST_KEEPS) {
+        share = share_of_crossing(first);
+        return moved == 0.0;
     }
+    bool bends = is_bent(first, moved);
     Crossed second = crossed(line, surfaces.second, moved);
+    bends = bends || is_bent(second, moved);
     vec2 z = vec2(first.at.z, second.at.z);
     bvec2 open = lessThan(abs(z), vec2(PHI_ONE));
     float p = open.x ? phi(z.x) : z.x > 0.0 ? 1.0 : 0.0;
     float q = open.y ? phi(z.y) : z.y > 0.0 ? 1.0 : 0.0;
     float both = p * q;
     if (all(open)) {
-        vec3 a = first.gradient;
-        vec3 b = second.gradient;
         Sight s = line.s;
-        both = both_positive(Threshold(z.x, keeps_far(dot(a, s.c), a), direction(s, a)),
-                             Threshold(z.y, keeps_far(dot(b, s.c), b), direction(s, b)));
+        both = both_positive(Threshold(z.x, direction(s, first.gradient)), Threshold(z.y, direction(s, second.gradient)));
     }
     share = share_of_answers(surfaces.answers, p, q, 0.0, vec3(both, 0.0, 0.0), 0.0);
-    return min(abs(first.at.other), abs(second.at.other)) >= PHI_ONE;
+    return !bends && min(abs(first.at.other), abs(second.at.other)) >= PHI_ONE;
 }
 
 // True when the surfaces keep a point of the unit space.
@@ -308,8 +255,8 @@ bool combined_keeps(uint base, uint count, vec3 point) {
     return (stack & 1u) != 0u;
 }
 
-// The weight of a splat with a combined record, by the frame's mode: in mode `rara` the share of the chord that is kept (the
-// paper, section 3.4), else the share of the splat.
+// The share of a splat that a record's surfaces keep, by the frame's mode: in mode `rara` that of the chord (the paper, section 3.4),
+// else that of the splat. Of a list it is what all planes keep of the splat.
 float combined_weight(Sight s, uint base, uint flags, RecordSides sides, float sigma) {
     uint count = flags >> CUT_COUNT_SHIFT;
     bool is_chord = CLIP_MODE == MODE_RARA;
@@ -320,8 +267,8 @@ float combined_weight(Sight s, uint base, uint flags, RecordSides sides, float s
     if (has_front) {
         front = cut_records.at[base + CUT_HEADER + ENTRY_VECTORS * count];
     }
-    float start = -NO_CROSSING;
-    float end = NO_CROSSING;
+    float start = -PHI_ONE;
+    float end = PHI_ONE;
     uint measure = MEASURE_MASS;
     float whole = 1.0;
     float front_z = 0.0;
@@ -344,15 +291,25 @@ float combined_weight(Sight s, uint base, uint flags, RecordSides sides, float s
         bool far;
         front_z = beam_z(s, line.det, front, far);
         start = -front_z;
+        end = NO_CROSSING;
         measure = MEASURE_FRONT;
     } else {
+        bool is_list = LISTS_TOO && (flags & CUT_COMBINED) == 0u;
         uint open;
-        float share = share_of_sides(line, base, count, sides, open);
+        float share = share_of_sides(line, base, count, is_list, sides, open);
         if (open <= 3u) {
             return clamp(share, 0.0, 1.0);
         }
+        if (SEVERAL && is_list) {
+            return polytope_weight(s, base, count);
+        }
     }
-    return clamp(measured_widely(line, base, count, start, end, measure, front_z) / whole, 0.0, 1.0);
+    // Most pixels do not come here. All lines of the direction begin on the half-space in front of the eye, where that counts.
+    mat3 deviations = deviations_of(line);
+    vec3 h = is_chord ? vec3(1.0, 0.0, 0.0)
+        : has_front ? unit_of(front.xyz * deviations)
+        : direction_through(line, deviations, base, count);
+    return clamp(measured_across(line, deviations, h, base, count, start, end, measure, front_z) / whole, 0.0, 1.0);
 }
 
 #endif

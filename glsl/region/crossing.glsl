@@ -15,7 +15,6 @@ const float BENT = 0.05;
 struct Line {
     Sight s;
     float det;
-    float lateral; // what counts of the variance across the line: all, but where nodes stand for a part of it
     vec3 mean;
 };
 
@@ -23,7 +22,6 @@ Line line_through(Sight s) {
     Line line;
     line.s = s;
     line.det = determinant(s);
-    line.lateral = 1.0;
     vec2 d = s.delta / line.det;
     line.mean = d.x * (cross(s.b2, s.c) + s.low_pass * s.b1) + d.y * (cross(s.c, s.b1) + s.low_pass * s.b2);
     return line;
@@ -37,12 +35,7 @@ vec3 direction_of(Line line) {
 vec3 spread(Line line, vec3 v) {
     Sight s = line.s;
     vec3 across = v * (dot(s.b1, s.b1) + dot(s.b2, s.b2) + s.low_pass) - s.b1 * dot(s.b1, v) - s.b2 * dot(s.b2, v);
-    vec3 all = (s.c * dot(s.c, v) + s.low_pass * across) / line.det;
-    if (line.lateral == 1.0) {
-        return all;
-    }
-    vec3 along = direction_of(line) * dot(direction_of(line), v);
-    return along + line.lateral * (all - along);
+    return (s.c * dot(s.c, v) + s.low_pass * across) / line.det;
 }
 
 float variance_of(Line line, vec3 a) {
@@ -50,12 +43,7 @@ float variance_of(Line line, vec3 a) {
     vec3 a1 = cross(a, s.b1);
     vec3 a2 = cross(a, s.b2);
     float along = dot(a, s.c);
-    float all = (along * along + s.low_pass * (dot(a1, a1) + dot(a2, a2) + s.low_pass * dot(a, a))) / line.det;
-    if (line.lateral == 1.0) {
-        return all;
-    }
-    along = dot(a, direction_of(line));
-    return along * along + line.lateral * max(all - along * along, 0.0);
+    return (along * along + s.low_pass * (dot(a1, a1) + dot(a2, a2) + s.low_pass * dot(a, a))) / line.det;
 }
 
 // The trace of the bend times the covariance.
@@ -63,12 +51,7 @@ float trace_of(Line line, UnitSurface surface) {
     Sight s = line.s;
     float size = dot(s.b1, s.b1) + dot(s.b2, s.b2) + s.low_pass;
     float across = bend_trace(surface) * size - bend_along(surface, s.b1) - bend_along(surface, s.b2);
-    float all = (bend_along(surface, s.c) + s.low_pass * across) / line.det;
-    if (line.lateral == 1.0) {
-        return all;
-    }
-    float along = bend_along(surface, direction_of(line));
-    return along + line.lateral * (all - along);
+    return (bend_along(surface, s.c) + s.low_pass * across) / line.det;
 }
 
 // The deviation of a function with this gradient, and the direction in which it varies most.
@@ -125,7 +108,7 @@ struct Crossed {
     vec3 other_gradient;
 };
 
-// `moved` is by how many deviations the bend across the direction moves the mean.
+// `moved` is by how much the bend across the direction moves the mean; 0 where that is little.
 Crossed crossed(Line line, UnitSurface surface, out float moved) {
     Crossed crossing;
     vec3 gradient = gradient_at(surface, line.mean);
@@ -133,7 +116,7 @@ Crossed crossed(Line line, UnitSurface surface, out float moved) {
     float n = steepest(line, gradient, along);
     float bend = bend_along(surface, along);
     float shift = trace_of(line, surface) - bend;
-    moved = abs(shift) <= BENT * n ? 0.0 : 1.0;
+    moved = abs(shift) <= BENT * n ? 0.0 : abs(shift);
     float value = value_at(surface, line.mean) + shift;
     crossing.terms = Terms(value + bend, n * n, bend * n * n);
     crossing.at = crossings(value, n, bend);
@@ -143,6 +126,42 @@ Crossed crossed(Line line, UnitSurface surface, out float moved) {
     crossing.gradient = crossing.at.exist ? gradient - crossing.at.z * across : gradient;
     crossing.other_gradient = crossing.at.other != NO_CROSSING ? gradient + crossing.at.other * across : gradient;
     return crossing;
+}
+
+// True for a surface that bends much across the direction in which it varies most, and is not so far that no point of the splat is on
+// its other side: a function's square has its value at PHI_ONE there, less 1.
+bool is_bent(Crossed crossing, float moved) {
+    Terms terms = crossing.terms;
+    float bend = abs(terms.bend) / max(terms.variance, 1e-30);
+    float most = PHI_ONE * sqrt(terms.variance) + (PHI_ONE * PHI_ONE - 1.0) * (bend + moved);
+    return moved > 0.0 && abs(terms.value) <= most;
+}
+
+// A vector's variance across a line, and the deviation that it has there.
+float across(Line line, vec3 v, out vec3 deviation) {
+    vec3 direction = direction_of(line);
+    vec3 moved = spread(line, v) - direction * dot(direction, v);
+    float variance = dot(v, moved);
+    deviation = variance > 0.0 ? moved * inversesqrt(variance) : vec3(0.0);
+    return variance > 0.0 ? variance : 1.0;
+}
+
+// A unit vector across a unit vector.
+vec3 perpendicular(vec3 v) {
+    return normalize(cross(v, abs(v.x) < 0.7 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0)));
+}
+
+// The deviations along a line and in two directions across it, none of which depends on another.
+mat3 deviations_of(Line line) {
+    mat3 deviations;
+    deviations[0] = direction_of(line);
+    vec3 p = dot(line.s.b1, line.s.b1) < dot(line.s.b2, line.s.b2) ? line.s.b2 : line.s.b1;
+    p /= max(length(p), 1e-30);
+    vec3 q = cross(deviations[0], p);
+    float variance = across(line, p, deviations[1]);
+    q -= p * (dot(q, deviations[1]) * inversesqrt(variance));
+    across(line, q, deviations[2]);
+    return deviations;
 }
 
 #endif

@@ -4,25 +4,17 @@
 // (band.glsl). Twin: src/reference/region/gaussian_side.rs.
 #ifndef RARA_REGION_GAUSSIAN_SIDE
 #define RARA_REGION_GAUSSIAN_SIDE
-#include "region/answers.glsl"
 #include "region/shortlist.glsl"
 
 uint gaussian_side(mat3 axes, vec3 position, float deviations) {
     if (has_shortlist() && shortlist_side() != SIDE_CUTOFF) {
         return shortlist_side();
     }
-    if (COMBINED && LAYER.region.op == OP_PARTS) {
-        Answers answers = Answers(0u, 0u);
-        for (uint i = 0u; i < surface_count(); i++) {
-            answer(answers, surface_gaussian_side(surface_at(i), axes, position, deviations), operators_at(i));
-        }
-        return side_answered(answers);
+    RegionAnswer region = unasked();
+    for (uint i = 0u; i < surface_count() && is_open(region); i++) {
+        add_answer(region, i, surface_gaussian_side(surface_at(i), axes, position, deviations));
     }
-    uint side = side_undecided();
-    for (uint i = 0u; i < surface_count() && side != side_that_decides(); i++) {
-        side = combined_side(side, surface_gaussian_side(surface_at(i), axes, position, deviations));
-    }
-    return side;
+    return side_of(region);
 }
 
 #endif

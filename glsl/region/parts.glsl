@@ -1,6 +1,6 @@
 // A stack of the parts of a region, of which some are decided. A part is a word: 0 or 1 where it is decided, else 2 and the
 // number of its first surface in a list, which ends with the part's last one. The includer says whether there are parts, as
-// HAS_PARTS, and how long the list may be, as PART_ENTRIES. Twin: src/reference/region/reduced.rs.
+// HAS_PARTS, and keeps the operators of the list's surfaces. Twin: src/reference/region/reduced.rs.
 #ifndef RARA_REGION_PARTS
 #define RARA_REGION_PARTS
 #include "region/answers.glsl"
@@ -9,10 +9,13 @@
 const uint PART_DEPTH = 18u;
 
 shared uint parts[HAS_PARTS ? PART_DEPTH * gl_WorkGroupSize.x : 1u];
-shared uint entry_operators[HAS_PARTS ? PART_ENTRIES * gl_WorkGroupSize.x : 1u];
+
+// The operators of a surface of the list.
+uint listed_operators(uint entry);
+void list_operators(uint entry, uint operators);
 
 // The part that two parts make. `entries` is how many surfaces the list has so far.
-uint joined(uint below, uint top, bool is_or, uint first_entry, inout uint entries) {
+uint joined(uint below, uint top, bool is_or, inout uint entries) {
     bool below_decided = below < 2u;
     if (below_decided || top < 2u) {
         uint decided = below_decided ? below : top;
@@ -26,21 +29,20 @@ uint joined(uint below, uint top, bool is_or, uint first_entry, inout uint entri
         }
         return decided;
     }
-    uint last = first_entry + entries - 1u;
-    uint operators = entry_operators[last];
+    uint operators = listed_operators(entries - 1u);
     uint count = operator_count(operators);
-    entry_operators[last] = operators + 1u + (is_or ? 1u << (OPERATOR_SHIFT + count) : 0u);
+    list_operators(entries - 1u, operators + 1u + (is_or ? 1u << (OPERATOR_SHIFT + count) : 0u));
     return below;
 }
 
 // Puts a part onto the stack and joins it with those below.
-void push_part(uint part, uint operators, uint first_part, uint first_entry, inout uint depth, inout uint entries) {
+void push_part(uint part, uint operators, uint first_part, inout uint depth, inout uint entries) {
     parts[first_part + depth++] = part;
     for (uint i = 0u; i < operator_count(operators); i++) {
         depth--;
         uint top = parts[first_part + depth];
         uint below = parts[first_part + depth - 1u];
-        parts[first_part + depth - 1u] = joined(below, top, is_or(operators, i), first_entry, entries);
+        parts[first_part + depth - 1u] = joined(below, top, is_or(operators, i), entries);
     }
 }
 

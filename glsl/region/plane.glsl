@@ -1,6 +1,7 @@
 // The first shape: a half-space, whose unit normal points to what it keeps. Twin: src/reference/region/plane.rs.
 #ifndef RARA_REGION_PLANE
 #define RARA_REGION_PLANE
+#include "region/unit_surface.glsl"
 #include "two_float.glsl"
 
 // Signed distance of a point, the layer's units, positive on the visible side.
@@ -10,6 +11,10 @@ float plane_distance(uint surface, vec3 position) {
 
 vec4 plane_half_space(uint surface, mat3 axes, vec3 position) {
     return vec4(surfaces.at[surface].high.xyz * axes, plane_distance(surface, position));
+}
+
+UnitSurface plane_unit_surface(uint surface, mat3 axes, vec3 position) {
+    return UnitSurface(plane_half_space(surface, axes, position), vec3(0.0), vec3(0.0));
 }
 
 // The length of the normal in the Gaussian's unit space is the standard deviation along the normal.

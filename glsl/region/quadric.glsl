@@ -40,7 +40,7 @@ vec4 quadric_half_space(uint surface, mat3 axes, vec3 position) {
     return vec4(quadric_gradient(surface, position) * axes, quadric_distance(surface, position));
 }
 
-UnitSurface quadric_unit_surface(uint surface, mat3 axes, vec4 half_space) {
+UnitSurface quadric_with(uint surface, mat3 axes, vec4 half_space) {
     UnitSurface matrix = quadric_matrix(surface);
     vec3 x = bent(matrix, axes[0]);
     vec3 y = bent(matrix, axes[1]);
@@ -50,6 +50,10 @@ UnitSurface quadric_unit_surface(uint surface, mat3 axes, vec4 half_space) {
     s.diagonal = vec3(dot(axes[0], x), dot(axes[1], y), dot(axes[2], z));
     s.across = vec3(dot(axes[0], y), dot(axes[0], z), dot(axes[1], z));
     return s;
+}
+
+UnitSurface quadric_unit_surface(uint surface, mat3 axes, vec3 position) {
+    return quadric_with(surface, axes, quadric_half_space(surface, axes, position));
 }
 
 // The inverse of sign Q with `shift` added to its diagonal. False where that matrix is not positive definite.
@@ -76,7 +80,7 @@ uint quadric_gaussian_side(uint surface, mat3 axes, vec3 position, float deviati
     if (offset >= deviations * (slope + 1.0001 * deviations * largest * bend_norm(quadric_matrix(surface)))) {
         return side;
     }
-    UnitSurface s = quadric_unit_surface(surface, axes, half_space);
+    UnitSurface s = quadric_with(surface, axes, half_space);
     float norm = bend_norm(s);
     float support = deviations * (slope + deviations * norm);
     if (offset >= support) {

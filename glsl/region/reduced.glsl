@@ -8,8 +8,18 @@
 #include "region/gaussian_side.glsl"
 
 #define HAS_PARTS COMBINED
-#define PART_ENTRIES MAX_CUTTING
 #include "region/parts.glsl"
+
+// The place of the record that is written.
+uint written_record;
+
+uint listed_operators(uint entry) {
+    return operators_of(written_record, entry);
+}
+
+void list_operators(uint entry, uint operators) {
+    cut_records.at[written_record + CUT_HEADER + ENTRY_VECTORS * entry + 1u].w = float(operators);
+}
 
 // A surface is taken to keep no more than another if it reaches beyond that by at most this, deviations.
 const float IMPLIED = 3e-4;
@@ -20,17 +30,26 @@ float nearness(UnitSurface s) {
     return min(abs(s.half_space.w) / max(slope, 1e-30), 1e29);
 }
 
-// The distance of the last of the MAX_CUTTING nearest surfaces, and how many at that distance are among them.
-float farthest_counted(Footprint f, vec3 position, float deviations, out uint room) {
-    float farthest = -1.0;
-    room = MAX_CUTTING;
+// The order in which surfaces take the places of a record that has not room for all. Of a list those come first that leave least
+// of the splat, and else those that are nearest its centre.
+float precedence(UnitSurface s) {
+    if (LAYER.region.combined != 0u) {
+        return nearness(s);
+    }
+    float leaves = clamp(s.half_space.w / max(length(s.half_space.xyz), 1e-30), -1e29, 1e29);
+    return LAYER.region.op == OP_OR ? -leaves : leaves;
+}
+
+// The precedence of the last of the surfaces that have room, and how many of that precedence have.
+float last_precedence(Footprint f, vec3 position, float deviations, inout uint room) {
+    float farthest = -1e30;
     while (true) {
         float next = 1e30;
         uint ties = 0u;
         for (uint i = 0u; i < surface_count(); i++) {
             uint surface = surface_at(i);
             if (surface_gaussian_side(surface, f.axes, position, deviations) == SIDE_CUTOFF) {
-                float here = nearness(unit_surface(surface, f.axes, position));
+                float here = precedence(unit_surface(surface, f.axes, position));
                 ties = here > farthest && here < next ? 1u : here == next ? ties + 1u : ties;
                 next = here > farthest ? min(next, here) : next;
             }
@@ -43,8 +62,8 @@ float farthest_counted(Footprint f, vec3 position, float deviations, out uint ro
     }
 }
 
-void write_entry(uint base, uint entry, UnitSurface s, uint operators) {
-    uint at = base + CUT_HEADER + ENTRY_VECTORS * entry;
+void write_entry(uint entry, UnitSurface s, uint operators) {
+    uint at = written_record + CUT_HEADER + ENTRY_VECTORS * entry;
     cut_records.at[at] = s.half_space;
     cut_records.at[at + 1u] = vec4(s.diagonal, float(operators));
     cut_records.at[at + 2u] = vec4(s.across, 0.0);
@@ -71,16 +90,16 @@ bool implies(UnitSurface one, UnitSurface other, float deviations) {
 }
 
 // Takes a surface off the list that changes nothing beside the one that it is joined with: as a capsule's ball within its tube.
-void leave_out_implied(uint base, float deviations, uint first_entry, inout uint entries) {
+void leave_out_implied(float deviations, inout uint entries) {
     for (uint i = 1u; i < entries;) {
-        uint operators = entry_operators[first_entry + i];
+        uint operators = listed_operators(i);
         uint count = operator_count(operators);
-        if (operator_count(entry_operators[first_entry + i - 1u]) > 0u || count == 0u) {
+        if (operator_count(listed_operators(i - 1u)) > 0u || count == 0u) {
             i++;
             continue;
         }
-        UnitSurface below = entry_of(base, i - 1u);
-        UnitSurface top = entry_of(base, i);
+        UnitSurface below = entry_of(written_record, i - 1u);
+        UnitSurface top = entry_of(written_record, i);
         bool top_implies = implies(top, below, deviations);
         if (!top_implies && !implies(below, top, deviations)) {
             i++;
@@ -88,67 +107,74 @@ void leave_out_implied(uint base, float deviations, uint first_entry, inout uint
         }
         uint ors = operators >> OPERATOR_SHIFT;
         if (top_implies != is_or(operators, 0u)) {
-            write_entry(base, i - 1u, top, 0u);
+            write_entry(i - 1u, top, 0u);
         }
-        entry_operators[first_entry + i - 1u] = count - 1u | (ors >> 1) << OPERATOR_SHIFT;
+        list_operators(i - 1u, count - 1u | (ors >> 1) << OPERATOR_SHIFT);
         entries--;
         for (uint j = i; j < entries; j++) {
-            write_entry(base, j, entry_of(base, j + 1u), 0u);
-            entry_operators[first_entry + j] = entry_operators[first_entry + j + 1u];
+            write_entry(j, entry_of(written_record, j + 1u), listed_operators(j + 1u));
         }
         i = max(i - 1u, 1u);
     }
 }
 
-// Writes the surfaces that cut a Gaussian behind its record's header. Returns 0 or 1 where nothing or all is kept, whatever
-// the pixel, else 2.
-uint write_reduced(uint base, Footprint f, vec3 position, float deviations, out uint entries) {
+// A region as one Gaussian sees it.
+struct Rest {
+    uint decided; // 0 or 1 where nothing or all is kept, whatever the pixel, else 2
+    uint cutting; // how many surfaces cut the Gaussian
+    uint entries; // how many of them are written
+    uint depth; // how deep a stack of their answers may be
+};
+
+// Writes the surfaces that cut a Gaussian behind the header of `written_record`, those that come first where there is no room for all.
+Rest write_reduced(Footprint f, vec3 position, float deviations, uint room) {
     uint first_part = gl_LocalInvocationIndex * PART_DEPTH;
-    uint first_entry = gl_LocalInvocationIndex * MAX_CUTTING;
-    float farthest = 1e30;
+    float last = 1e30;
     bool is_again = false;
-    uint room = 0u;
-    uint cutting = 0u;
+    uint room_at_last = room;
     uint depth = 0u;
-    entries = 0u;
+    Rest rest = Rest(2u, 0u, 0u, 0u);
     for (uint i = 0u; i <= surface_count(); i++) {
         if (i == surface_count()) {
-            if (cutting <= MAX_CUTTING || is_again) {
+            if (!MANY || rest.cutting <= room || is_again) {
                 break;
             }
-            // There are more than have room, so all is done again for the nearest.
+            // There are more than have room, so all is done again for the first.
             is_again = true;
-            farthest = farthest_counted(f, position, deviations, room);
+            last = last_precedence(f, position, deviations, room_at_last);
             depth = 0u;
-            entries = 0u;
+            rest.entries = 0u;
             i = 0u;
         }
         uint surface = surface_at(i);
         uint side = surface_gaussian_side(surface, f.axes, position, deviations);
         uint part = side == SIDE_VISIBLE ? 1u : 0u;
         if (side == SIDE_CUTOFF) {
-            cutting++;
+            rest.cutting += is_again ? 0u : 1u;
             UnitSurface s = unit_surface(surface, f.axes, position);
             part = s.half_space.w >= 0.0 ? 1u : 0u;
-            float here = nearness(s);
-            bool counts = !is_again || here < farthest || (here == farthest && room > 0u);
-            room -= is_again && here == farthest && room > 0u ? 1u : 0u;
-            if (counts && entries < MAX_CUTTING) {
-                write_entry(base, entries, s, 0u);
-                entry_operators[first_entry + entries] = 0u;
-                part = 2u + entries++;
+            float here = precedence(s);
+            bool counts = !is_again || here < last || (here == last && room_at_last > 0u);
+            room_at_last -= is_again && here == last && room_at_last > 0u ? 1u : 0u;
+            if (counts && rest.entries < room) {
+                write_entry(rest.entries, s, 0u);
+                part = 2u + rest.entries++;
             }
         }
-        push_part(part, operators_at(i), first_part, first_entry, depth, entries);
+        rest.depth = max(rest.depth, depth + 1u);
+        push_part(part, operators_at(i), first_part, depth, rest.entries);
     }
-    leave_out_implied(base, deviations, first_entry, entries);
-    for (uint i = 0u; i < entries; i++) {
-        UnitSurface s = entry_of(base, i);
+    rest.decided = min(parts[first_part], 2u);
+    if (SEVERAL) {
+        leave_out_implied(deviations, rest.entries);
+    }
+    for (uint i = 0u; i < rest.entries; i++) {
+        UnitSurface s = entry_of(written_record, i);
         float size = max(largest(s.half_space.xyz), max(largest(s.diagonal), largest(s.across)));
         float inverse = size > 0.0 ? 1.0 / size : 1.0;
-        write_entry(base, i, UnitSurface(s.half_space * inverse, s.diagonal * inverse, s.across * inverse), entry_operators[first_entry + i]);
+        write_entry(i, UnitSurface(s.half_space * inverse, s.diagonal * inverse, s.across * inverse), listed_operators(i));
     }
-    return min(parts[first_part], 2u);
+    return rest;
 }
 
 #endif

@@ -4,6 +4,7 @@
 // operators. Included after the buffer `shortlists` is declared.
 #ifndef RARA_REGION_SHORTLIST
 #define RARA_REGION_SHORTLIST
+#include "region/answers.glsl"
 #include "region/surface.glsl"
 
 // True when some layer's region has as many surfaces as SHORTLIST_FROM.
@@ -52,6 +53,33 @@ uint surface_at(uint i) {
 // The operators that follow a surface's answer.
 uint operators_at(uint i) {
     return has_shortlist() ? shortlists.at[shortlist_place + 2u + 2u * i] : surfaces.at[surface_at(i)].operators;
+}
+
+// The region's answer, from those of the surfaces that were asked so far.
+struct RegionAnswer {
+    Answers parts; // of a region with parts
+    uint list; // the side of a list
+};
+
+RegionAnswer unasked() {
+    return RegionAnswer(Answers(0u, 0u), side_undecided());
+}
+
+// False where the surfaces that were not asked have no say.
+bool is_open(RegionAnswer region) {
+    return has_parts() || region.list != side_that_decides();
+}
+
+void add_answer(inout RegionAnswer region, uint i, uint side) {
+    if (has_parts()) {
+        answer(region.parts, side, operators_at(i));
+    } else {
+        region.list = combined_side(region.list, side);
+    }
+}
+
+uint side_of(RegionAnswer region) {
+    return has_parts() ? side_answered(region.parts) : region.list;
 }
 
 #endif

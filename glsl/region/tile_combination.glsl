@@ -60,7 +60,8 @@ uint combination_side(inout Record record, uint flags, vec2 delta, vec2 middle) 
         UnitSurface surface = entry_of(record_base(record), i);
         uint side = surface_side(tile, points, surface);
         uint answers = side == SIDE_VISIBLE ? 15u : 0u;
-        record.sides.visible |= side == SIDE_VISIBLE ? 1u << i : 0u;
+        uint bit = MANY && i >= SIDES_KNOWN ? 0u : 1u << i;
+        record.sides.visible |= side == SIDE_VISIBLE ? bit : 0u;
         if (side == SIDE_CUTOFF) {
             bool is_first = record.sides.cutting == 0u;
             answers = is_first ? FIRST_KEEPS : SECOND_KEEPS;
@@ -69,7 +70,7 @@ uint combination_side(inout Record record, uint flags, vec2 delta, vec2 middle) 
             } else {
                 record.surfaces.second = surface;
             }
-            record.sides.cutting |= 1u << i;
+            record.sides.cutting |= bit;
         }
         stack = four_answered(stack, answers, operators_of(record_base(record), i));
     }
@@ -78,7 +79,8 @@ uint combination_side(inout Record record, uint flags, vec2 delta, vec2 middle) 
         record.surfaces.first = record.surfaces.second;
         answers = FIRST_KEEPS;
     }
-    record.surfaces.answers = bitCount(record.sides.cutting) <= 2 ? answers : 0u;
+    bool are_known = !MANY || flags >> CUT_COUNT_SHIFT <= SIDES_KNOWN;
+    record.surfaces.answers = are_known && bitCount(record.sides.cutting) <= 2 ? answers : 0u;
     // No operator drops what would be kept of less, so that the other combinations lie between.
     return (answers & 1u) != 0u ? SIDE_VISIBLE : (answers & 8u) == 0u ? SIDE_INVISIBLE : SIDE_CUTOFF;
 }

@@ -29,21 +29,22 @@ use region::Region;
 const MAX_CHILDREN: u32 = 3;
 
 setters! {
-    /// How a clip is baked.
+    /// The settings of a bake.
     #[derive(Debug, Clone, Copy, PartialEq)]
     #[non_exhaustive]
     pub struct BakeSettings {
-        /// The Gaussians that a frame of this mode cuts are cut. [`Mode::Hard`] cuts none, so that Gaussians stay
-        /// or go by their centres, and [`Mode::None`] keeps all.
+        /// The mode whose frames decide which Gaussians are cut. [`Mode::Hard`] cuts none: it keeps or drops each Gaussian by
+        /// its centre. [`Mode::None`] keeps all.
         pub mode: Mode,
-        /// [`Mode::Rara`]: the traced ellipsoid, in standard deviations.
+        /// [`Mode::Rara`]: the radius of the traced ellipsoid, in standard deviations.
         pub sigma: f32,
-        /// The number of Gaussians that stand for a cut one, 1 to 3: what is left of it is divided along the cut's normal
-        /// into parts of equal mass.
+        /// The number of Gaussians that replace a cut one, 1 to 3. The visible part of the cut one is divided along the cut's
+        /// normal into as many parts of equal mass.
         pub children: u32,
-        /// A cut Gaussian stays whole where the clip keeps all within this many standard deviations of its centre. At 1, no
-        /// child of a convex region is ever cut again, so that baking twice is baking once. Greater numbers follow the cut
-        /// closer, up to about 1.5 (a box cuts a scanned heart with 34.4 dB for 32.4), but baking again changes children.
+        /// A Gaussian stays whole if the clip keeps everything within this many standard deviations of its centre. At 1, no
+        /// child is cut again by the same convex region, so that baking twice gives the same as baking once. Greater numbers,
+        /// up to about 1.5, follow the cut more closely (34.4 dB instead of 32.4 dB for a scanned heart in a box), but baking
+        /// again changes the children.
         pub leave: f32,
     }
 }
@@ -59,22 +60,23 @@ impl Default for BakeSettings {
     }
 }
 
-/// What baking has done to the Gaussians. The first three are the classes that a frame counts, whatever a camera sees.
+/// The numbers of Gaussians that baking has kept, replaced and dropped. The fields `visible`, `cutoff` and `invisible` are the
+/// classes that a frame counts, without regard to a camera.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "json", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct BakeCounts {
-    /// Those that the clip leaves whole; they are kept.
+    /// The Gaussians that the clip leaves whole; they are kept.
     pub visible: u64,
-    /// Those that the clip cuts; they are replaced, except the next two.
+    /// The Gaussians that the clip cuts; they are replaced, except those of `left` and `faint`.
     pub cutoff: u64,
-    /// Those that lie outside; they are dropped.
+    /// The Gaussians outside the clip; they are dropped.
     pub invisible: u64,
-    /// Of those that are cut: kept as they are, since the cut passes far enough outside ([`BakeSettings::leave`]).
+    /// The cut Gaussians that stay whole, because the cut is far enough from their centres ([`BakeSettings::leave`]).
     pub left: u64,
-    /// Of those that are cut: dropped, since what is left of them reaches an alpha of 1/255 nowhere.
+    /// The cut Gaussians that are dropped, because the alpha of their visible part is below 1/255 everywhere.
     pub faint: u64,
-    /// Gaussians that stand for cut ones.
+    /// The Gaussians that replace cut ones.
     pub children: u64,
 }
 
@@ -93,11 +95,11 @@ impl std::ops::AddAssign for BakeCounts {
 #[derive(Debug, Clone, PartialEq, Default)]
 #[non_exhaustive]
 pub struct BakedGaussians {
-    /// The Gaussians, in the order of those that they come from.
+    /// The new Gaussians, in the order of the original ones.
     pub gaussians: Gaussians,
-    /// For each of them, the index of the one that it comes from.
+    /// For each new Gaussian, the index of the original one.
     pub sources: Vec<u32>,
-    /// What has been done.
+    /// The numbers of Gaussians that were kept, replaced and dropped.
     pub counts: BakeCounts,
 }
 
@@ -145,7 +147,7 @@ pub fn bake(gaussians: &Gaussians, clip: &Clip, settings: &BakeSettings) -> Resu
 /// counts for what is visible at all.
 ///
 /// # Errors
-/// As [`bake`].
+/// The errors of [`bake`].
 pub fn bake_layer(
     layer: &Layer<'_>,
     clip: &Clip,

@@ -364,3 +364,46 @@ fn settings_that_make_no_sense_are_refused() {
         assert!(error.contains(says), "{error}");
     }
 }
+
+/// Parts that would show nowhere, as their layer fades, are dropped and counted, and no others.
+#[test]
+fn parts_that_are_too_faint_for_their_layer_are_dropped_and_counted() {
+    let mut scene = generate(Kind::General, 3000, 6);
+    for (index, opacity) in scene.opacities_mut().iter_mut().enumerate() {
+        *opacity *= 0.02 * (index % 50) as f32;
+    }
+    let clip = plane(DVec3::new(1.0, 0.5, -0.2), 0.1);
+    // None stays whole, so that the child of each opaque one shows the factor of its opacity.
+    let settings = BakeSettings::default().leave(10.0);
+    let mut opaque = scene.clone();
+    opaque.opacities_mut().fill(1.0);
+    let opaque = bake(&opaque, &clip, &settings).expect("it can be baked");
+    for fade in [1.0, 0.5, 0.05] {
+        let state = LayerState::default().opacity(fade);
+        let layer = Layer::new("faded", &scene).with(state);
+        let baked = bake_layer(&layer, &clip, &settings).expect("it can be baked");
+        let mut faded = scene.clone();
+        faded
+            .opacities_mut()
+            .iter_mut()
+            .for_each(|own| *own *= fade);
+        let sides = clip::clip::<f64>(&faded, &clip, &Settings::default());
+        let is_kept = |&index: &u32| match sides[index as usize] {
+            Side::Cutoff => {
+                let child = opaque.sources.binary_search(&index);
+                let factor = child.map_or(0.0, |child| opaque.gaussians.opacities()[child]);
+                scene.opacities()[index as usize] * factor * fade * 255.0 >= 1.0
+            }
+            side => side != Side::Invisible,
+        };
+        let kept: Vec<u32> = (0..scene.len() as u32).filter(is_kept).collect();
+        assert_eq!(baked.sources, kept, "{fade}");
+        let dropped = baked.counts.visible + baked.counts.cutoff - kept.len() as u64;
+        assert_eq!(baked.counts.faint, dropped, "{fade}");
+        assert!(
+            dropped > 10 && baked.counts.children > 100,
+            "{:?}",
+            baked.counts
+        );
+    }
+}

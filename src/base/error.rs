@@ -18,7 +18,7 @@ pub enum Error {
         /// The operating system's error.
         source: std::io::Error,
     },
-    /// A file was read but what stands in it is not usable.
+    /// A file was read, but its content cannot be used.
     #[error("{path}: {message}", path = path.display())]
     Format {
         /// The file.
@@ -29,7 +29,7 @@ pub enum Error {
     /// The caller asked for something that is not possible, for example a clip plane with a zero normal.
     #[error("{0}")]
     Invalid(String),
-    /// No usable Vulkan device, or the one asked for lacks something.
+    /// No Vulkan device can be used, or the chosen device does not have a required feature.
     #[error("{0}")]
     Device(String),
     /// The device was lost. Nothing on it can be used any more: what was made from it is dropped, then the device, and
@@ -52,11 +52,10 @@ pub enum Error {
         /// The sentence that Vulkan has for that code.
         text: String,
     },
-    /// The device has not enough memory for what was asked.
+    /// The device does not have enough free memory for the request.
     #[error("{0}")]
     Memory(String),
-    /// It would take more device memory than
-    /// `Device::set_memory_budget` allows. None of it was allocated.
+    /// The request would take more device memory than `Device::set_memory_budget` allows. Nothing was allocated.
     #[error("{0}")]
     Budget(String),
     /// The validation layer reported something; the messages are the layer's own.
@@ -85,14 +84,14 @@ impl Error {
         }
     }
 
-    /// An [`Error::Io`] for `path`, to be used with `map_err`.
+    /// Returns a function for `map_err` that makes an [`Error::Io`] for `path`.
     pub fn io(path: impl Into<PathBuf>) -> impl FnOnce(std::io::Error) -> Self {
         let path = path.into();
         move |source| Self::Io { path, source }
     }
 
-    /// An [`Error::Format`] for `path`. It is one line of bounded length, whatever the message quotes of a file: of more than a
-    /// thousand characters the middle is left out, and control characters are escaped.
+    /// Returns an [`Error::Format`] for `path`. It is one line of bounded length, whatever the message quotes of a file: of
+    /// more than a thousand characters the middle is left out, and control characters are escaped.
     pub fn format(path: impl Into<PathBuf>, message: impl Into<String>) -> Self {
         Self::Format {
             path: path.into(),

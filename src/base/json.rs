@@ -23,6 +23,16 @@ pub fn read(path: &Path, what: &str) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
+/// The bytes of a file that is short enough to be looked at as a whole.
+pub const SHORT: u64 = 16 << 20;
+
+/// The document of a file of JSON that is short; none of others.
+pub fn short_document(path: &Path) -> Option<serde_json::Value> {
+    let is_short = std::fs::metadata(path).is_ok_and(|facts| facts.len() <= SHORT);
+    let text = is_short.then(|| std::fs::read(path).ok()).flatten()?;
+    serde_json::from_slice(bare(&text)).ok()
+}
+
 /// JSON without byte-order mark and leading blanks.
 pub fn bare(json: &[u8]) -> &[u8] {
     json.strip_prefix(b"\xef\xbb\xbf")

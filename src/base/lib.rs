@@ -12,8 +12,10 @@ pub mod fnv;
 pub mod json;
 pub mod limits;
 pub mod parallel;
+mod rows;
 mod setters;
 pub mod stats;
+pub mod value;
 
 /// The text of `limits.rs`, of which the build of rara makes GLSL.
 #[doc(hidden)]

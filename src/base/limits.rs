@@ -5,6 +5,9 @@
 pub const COMPENSATION_SQUARE_MIN: f32 = 0.000025;
 /// Centres nearer than this along the view axis are culled where a camera has no near cut of its own, the scene's units.
 pub const NEAR_Z: f32 = 0.2;
+/// The least ratio of a Gaussian's smallest deviation to its largest: thinner ones are taken to be as thick. That is more than the
+/// rounding of a rotation turns a disc out of its plane, and no pixel shows it.
+pub const THINNEST: f32 = 1e-6;
 /// The projection's Jacobian is evaluated with x/z and y/z clamped this share of the picture beyond each edge.
 pub const CLAMP_MARGIN: f32 = 0.15;
 /// An opaque splat counts as one that lets this much through where the logarithm of that is needed.
@@ -17,8 +20,6 @@ pub const BEAM_SWITCH: f32 = 0.005;
 pub const WIDENING_REST: f32 = 0.05;
 /// A plane this many deviations beyond the eye cuts off no more than 2e-9 of what is in front of the eye.
 pub const BEYOND_EYE: f32 = 6.0;
-/// The most eyes that a frame has a picture of.
-pub const MAX_VIEWS: u32 = 1;
 /// The most coefficients that a colour channel has: those of degree 3.
 pub const MAX_SH_COEFFICIENTS: u32 = 16;
 /// Opacity below which a splat is invisible everywhere, and alpha below which a cut splat's weight is not computed: 1/255.
@@ -51,9 +52,10 @@ pub const SORT_BITS: u32 = 8;
 pub const SORT_GROUP_SIZE: u32 = 64;
 /// Most splats of one depth that one invocation orders alone.
 pub const TIES_ALONE: u32 = 24;
-/// Surfaces that a splat is weighed by where regions have parts or bend, those that cut it nearest its centre. Of the others
-/// it is on the side of its centre. A region that is a flat list of planes has no such limit.
-pub const MAX_CUTTING: u32 = 8;
+/// Surfaces for which a cutoff record has room in a region that has parts or bends. A splat that more cut has a long record.
+pub const RECORD_SURFACES: u32 = 8;
+/// The same in a region that is a list of planes.
+pub const RECORD_PLANES: u32 = 32;
 /// Cutoff records that splats can name: as many bit patterns of floats are below -2.5e30.
 pub const MAX_RECORDS: u32 = 54 << 22;
 /// Surfaces of a region from which its blocks have shortlists on GPUs: the surfaces that may cut a Gaussian of the block.

@@ -38,11 +38,11 @@ pub struct RaraGaussianArrays {
     pub opacity_stride: usize,
     /// Degree of the spherical harmonics, 0 to 3. Default: 0.
     pub sh_degree: u32,
-    /// Spherical harmonics: (sh_degree + 1)^2 coefficients a Gaussian, each red, green and blue, the constant one first.
+    /// Spherical harmonics: (sh_degree + 1)^2 coefficients per Gaussian, each red, green and blue, the constant one first.
     pub sh: *const f32,
     /// Bytes from one Gaussian's to the next one's; 0 stands for 12 (sh_degree + 1)^2.
     pub sh_stride: usize,
-    /// Whether they were trained antialiased: see rara_gaussians_set_antialiased. Default: false.
+    /// True if the Gaussians were trained antialiased: see rara_gaussians_set_antialiased. Default: false.
     pub antialiased: vk::Bool32,
     /// The low-pass that they were trained with, square pixels: see rara_gaussians_set_low_pass. Default: 0, which is 0.3.
     pub low_pass: f32,
@@ -82,7 +82,7 @@ impl RaraGaussianArrays {
     unsafe fn copied(&self) -> Result<GaussianArrays> {
         if self.sh_degree > 3 {
             return invalid(format!(
-                "arrays->sh_degree is {}: 0 to 3 can be drawn",
+                "arrays->sh_degree is {}; it must be from 0 to 3",
                 self.sh_degree
             ));
         }

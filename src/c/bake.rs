@@ -6,7 +6,7 @@ use crate::boundary::{RaraResult, guard, read, versioned, write};
 use crate::clip::RaraClip;
 use crate::gaussians::RaraGaussians;
 use crate::handles::{alive, create};
-use crate::settings::{RaraMode, mode, mode_code};
+use crate::settings::{Coded as _, RaraMode, choice};
 
 /// How a clip is baked.
 #[repr(C)]
@@ -32,7 +32,7 @@ impl From<BakeSettings> for RaraBakeSettings {
     fn from(settings: BakeSettings) -> Self {
         Self {
             struct_size: size_of::<Self>(),
-            mode: mode_code(settings.mode),
+            mode: settings.mode.code(),
             sigma: settings.sigma,
             children: settings.children,
             leave: settings.leave,
@@ -40,7 +40,8 @@ impl From<BakeSettings> for RaraBakeSettings {
     }
 }
 
-/// What baking has done. The first three are the classes that a frame counts, whatever a camera sees.
+/// The numbers of Gaussians that baking has kept, replaced and dropped. The fields visible, cutoff and invisible are the
+/// classes that a frame counts, without regard to a camera.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RaraBakeCounts {
@@ -48,15 +49,15 @@ pub struct RaraBakeCounts {
     pub struct_size: usize,
     /// Gaussians that the clip leaves whole; they are kept.
     pub visible: u64,
-    /// Gaussians that it cuts; they are replaced, except the next two.
+    /// Gaussians that the clip cuts; they are replaced, except those of left and faint.
     pub cutoff: u64,
-    /// Gaussians that lie outside; they are dropped.
+    /// Gaussians outside the clip; they are dropped.
     pub invisible: u64,
-    /// Gaussians that are cut and kept as they are, since the cut passes far enough outside (RaraBakeSettings::leave).
+    /// Cut Gaussians that stay whole, because the cut is far enough from their centres (RaraBakeSettings::leave).
     pub left: u64,
-    /// Gaussians that are cut and dropped, since nothing is left that could be seen.
+    /// Cut Gaussians that are dropped, because their visible part cannot be seen.
     pub faint: u64,
-    /// Gaussians that stand for cut ones.
+    /// Gaussians that replace cut ones.
     pub children: u64,
 }
 
@@ -111,7 +112,7 @@ pub unsafe extern "C" fn rara_gaussians_bake(
             false => {
                 let given = read(settings, default.into(), "settings")?;
                 default
-                    .mode(mode(given.mode)?)
+                    .mode(choice(given.mode, "settings->mode")?)
                     .sigma(given.sigma)
                     .children(given.children)
                     .leave(given.leave)

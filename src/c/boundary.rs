@@ -36,7 +36,7 @@ pub const RARA_ERROR_DEVICE_LOST: RaraResult = 8;
 
 /// The version of this header. It changes when a host must be compiled anew; structs that grow at their end and functions
 /// that are added do not change it.
-pub const RARA_ABI_VERSION: u32 = 4;
+pub const RARA_ABI_VERSION: u32 = 5;
 
 /// The version of the library that is linked: the RARA_ABI_VERSION of its header.
 #[unsafe(no_mangle)]
@@ -60,7 +60,7 @@ pub extern "C" fn rara_last_error_message() -> *const c_char {
 pub(crate) fn guard(run: impl FnOnce() -> Result<()>) -> RaraResult {
     let run = || {
         #[cfg(test)]
-        crate::nulls::panic_if_asked();
+        crate::tests::nulls::panic_if_asked();
         run()
     };
     // Handles are not unwind safe in Rust's sense; the documentation of RARA_ERROR_PANIC says what they are still good

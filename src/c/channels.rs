@@ -1,29 +1,28 @@
 //! What a frame's pixels are made of, as numbers in the host's memory.
 
-use rara::{Aov, Headless, Result, ShFormat};
+use rara::{Aov, Headless, Result};
 
 use crate::boundary::{RaraResult, Versioned, guard, invalid, read, versioned, write};
 use crate::camera::{self, RaraCamera};
 use crate::clip::{self, RaraClip};
 use crate::handles::alive;
-use crate::layer::{RaraLayer, given};
 use crate::renderer::RaraRenderer;
-use crate::scene::{numbers_of, of_layers};
+use crate::scene::RaraSceneBuffers;
 use crate::settings::{self, RaraSettings};
 
 /// Quantities that a pixel can have beside its colour (arbitrary output variables), one bit each. Means are over the pixel's
 /// splats, by what each adds to alpha.
 pub type RaraAovs = u32;
-/// The mean depth of what is left, along the view axis, world units; 0 where nothing is.
+/// The mean depth of what the clip leaves, along the view axis, in world units; 0 in an empty pixel.
 pub const RARA_AOV_DEPTH: RaraAovs = 1;
-/// Three channels, x, y and z: the mean direction of the splats' thinnest axes, turned to the eye, in the world, of length one;
-/// 0 where nothing is. On a cut it is still the splats' own, not the surface's.
+/// Three channels, x, y and z: the mean of the splats' thinnest axes, turned towards the eye, as a unit vector in world
+/// coordinates; 0 in an empty pixel. On a cut surface too, these are the axes of the splats, not the normal of the surface.
 pub const RARA_AOV_NORMAL: RaraAovs = 2;
-/// The number of the layer, from 0, whose splats add most to alpha; -1 where nothing is.
+/// The number, from 0, of the layer whose splats add most to alpha; -1 in an empty pixel.
 pub const RARA_AOV_LAYER: RaraAovs = 4;
-/// The mean share that the clip leaves of the splats, 1 where it cuts none; 0 where nothing is.
+/// The mean share that the clip leaves of the splats, 1 if it cuts none of them; 0 in an empty pixel.
 pub const RARA_AOV_WEIGHT: RaraAovs = 8;
-/// How many splats make the pixel, until it is saturated.
+/// The number of splats in the pixel, until it is saturated.
 pub const RARA_AOV_COUNT: RaraAovs = 16;
 
 /// All quantities in the order of their bits, and how many channels each has.
@@ -47,10 +46,10 @@ pub struct RaraChannels {
     pub width: u32,
     /// The camera's picture height, pixels.
     pub height: u32,
-    /// The place of the numbers: one channel after the other, in the order of the bits, and each row by row from the top left.
+    /// Where the numbers are written: one channel after the other, in the order of the bits, each row by row from the top left.
     pub values: *mut f32,
-    /// How many numbers there is room for, which is how many there are: width times height for each channel, of which
-    /// RARA_AOV_NORMAL has three and the others one. Set by rara_channels_default.
+    /// The number of values that `values` has room for: width times height for each channel. RARA_AOV_NORMAL has three channels,
+    /// all others have one. Set by rara_channels_default.
     pub value_count: usize,
 }
 
@@ -111,25 +110,22 @@ pub unsafe extern "C" fn rara_channels_default(
 }
 
 /// Draws what a frame's pixels are made of, and waits for it: depths, normals, layers, weights and counts, as the program's
-/// `--aov` does. It is for editors and measurements, not for each frame: every quantity takes a frame or more of its own, and
-/// the scene is uploaded for the call. All of its memory is freed again.
+/// `--aov` does. It is for editors and measurements, not for each frame: every quantity takes a frame or more of its own. All of
+/// its memory is freed again.
 ///
 /// The renderer lends its device, its compiled pipelines and its placement; its frames, attachments and depths have no say,
-/// and stay as they are. The scene is given as layers: states and clips that were set on the device are given with them. What
-/// `settings` show is ignored.
+/// and stay as they are. What `settings` show is ignored.
 ///
 /// RARA_ERROR_INVALID where the sizes of `channels` are not the camera's, or too few or too many; after an error `values` are as
 /// they were.
 ///
 /// # Safety
-/// `renderer` is alive, and no other thread changes it; nobody else uses the queue meanwhile; `layers` points to
-/// `layer_count` layers, which are as their fields say and all of one struct_size; the other pointers are as for
+/// `renderer` is alive, and no other thread changes it; nobody else uses the queue meanwhile; the other pointers are as for
 /// rara_renderer_configure; `channels` is as its fields say, and nobody else uses its values.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_renderer_channels(
     renderer: *const RaraRenderer,
-    layers: *const RaraLayer,
-    layer_count: usize,
+    scene: *const RaraSceneBuffers,
     camera: *const RaraCamera,
     clip: *const RaraClip,
     settings: *const RaraSettings,
@@ -157,12 +153,9 @@ pub unsafe extern "C" fn rara_renderer_channels(
         }
         let clip = clip::clip(clip, "clip")?.unwrap_or_default();
         let settings = settings::settings(settings)?;
-        let layers = given(layers, layer_count)?;
-        let numbers = numbers_of(&layers);
-        let scene = of_layers(&layers, &numbers);
+        let scene = alive(scene, "scene")?;
         let mut headless = Headless::beside(&renderer.0)?;
-        // No channel depends on the scene's own colours.
-        headless.load_as(scene, ShFormat::Byte)?;
+        headless.show(scene.buffers.clone())?;
         let made = headless.channels(&aovs, (&camera, &clip, &settings))?;
         let made: Vec<f32> = made.into_iter().flat_map(|made| made.values).collect();
         if made.len() != count {

@@ -6,11 +6,12 @@ use std::path::Path;
 use rara::ash::vk;
 use rara::clip::{Expression, NamedClip, clips_from_json, load_clips};
 use rara::glam::DVec3;
-use rara::{Clip, ClipOp, Error, Plane, Result};
+use rara::{Clip, Error, Plane, Result};
 
 use crate::boundary::{RaraResult, exclusive, guard, invalid, list};
 use crate::camera::vector;
 use crate::handles::{alive, create, destroy};
+use crate::settings::choice;
 use crate::text::{self, text};
 
 /// The region that stays visible, made of planes, slabs, boxes, spheres, ellipsoids, cylinders, capsules and cones. Where a
@@ -22,20 +23,20 @@ pub struct RaraClip(pub(crate) Clip);
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RaraPlane {
-    /// Points to the visible side.
+    /// The normal of the plane; it points to the visible side.
     pub normal: [f64; 3],
-    /// World units times the normal's length.
+    /// The offset d of the plane, in world units times the length of the normal.
     pub offset: f64,
 }
 
 /// How several planes combine.
 pub type RaraClipOp = u32;
-/// Visible where every plane keeps it.
+/// A point is visible if every plane keeps it.
 pub const RARA_CLIP_OP_AND: RaraClipOp = 0;
-/// Visible where any plane keeps it.
+/// A point is visible if at least one plane keeps it.
 pub const RARA_CLIP_OP_OR: RaraClipOp = 1;
 
-/// Makes a clip of half-spaces, at most 32; none keep everything.
+/// Makes a clip of half-spaces, at most 65536; none keep everything.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_clip_of_planes(
     planes: *const RaraPlane,
@@ -56,12 +57,7 @@ pub unsafe extern "C" fn rara_clip_of_planes(
         };
         let planes = list(planes, count, "planes")?.iter().enumerate();
         let planes: Vec<_> = planes.map(plane).collect::<Result<_>>()?;
-        let op = match op {
-            RARA_CLIP_OP_AND => ClipOp::And,
-            RARA_CLIP_OP_OR => ClipOp::Or,
-            other => return invalid(format!("op {other} is no RaraClipOp")),
-        };
-        Ok(RaraClip(Clip::of(planes, op)))
+        Ok(RaraClip(Clip::of(planes, choice(op, "op")?)))
     })
 }
 

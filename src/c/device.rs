@@ -70,7 +70,7 @@ pub struct RaraAdoptDesc {
     /// RaraDevice and of what was made from it. Until then the host keeps its device. It may be on any thread, must throw
     /// nothing, and may destroy the device. It is not called after rara_device_adopt has failed. Null, the default, for none.
     pub release: RaraRelease,
-    /// What `release` is given. Default: null.
+    /// The value that `release` is called with. Default: null.
     pub release_user: *mut c_void,
     /// Lends all device memory that rara uses, such as vmaAllocateMemory does. Any thread calls it that makes or destroys
     /// something of rara's, several at once; rara_renderer_prepare and rara_renderer_draw never do. Null, the default, for
@@ -78,7 +78,7 @@ pub struct RaraAdoptDesc {
     pub allocate: RaraAllocate,
     /// Takes back what `allocate` has lent; null where that is.
     pub free: RaraFree,
-    /// What `allocate` and `free` are given. Default: null.
+    /// The value that `allocate` and `free` are called with. Default: null.
     pub allocator_user: *mut c_void,
 }
 

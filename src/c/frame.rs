@@ -1,11 +1,12 @@
 //! Frames: configured, prepared, drawn.
 
 use rara::ash::vk;
-use rara::{ConfiguredFrame, PreparedFrame, Renderer, Result};
+use rara::{ConfiguredFrame, Kept, PreparedFrame, Renderer, Result};
 
 use crate::boundary::{RaraResult, guard, invalid, recording};
 use crate::camera::{self, RaraCamera};
 use crate::clip::{self, RaraClip};
+use crate::cut::RaraCut;
 use crate::depth::{self, RaraDepthImage};
 use crate::handles::{alive, alone, create, destroy};
 use crate::renderer::{RaraRenderer, with};
@@ -52,15 +53,47 @@ pub unsafe extern "C" fn rara_renderer_configure(
     frame: *mut *mut RaraFrame,
 ) -> RaraResult {
     create(frame, "frame", || {
-        let mut renderer = alone(renderer, "renderer")?;
-        let scene = alive(scene, "scene")?;
-        let camera = camera::camera(camera)?;
         let clip = clip::clip(clip, "clip")?.unwrap_or_default();
-        let settings = settings::settings(settings)?;
-        let renderer = &mut renderer.0;
-        let frame = renderer.configure(&scene.buffers, &camera, &clip, &settings)?;
-        Ok(RaraFrame(FrameState::Configured(frame)))
+        configured(renderer, scene, camera, &clip, settings)
     })
+}
+
+/// Does what rara_renderer_configure does, for a frame that shows a cut of the scene in place of a clip's. The frame's
+/// rara_renderer_prepare comes after rara_cut_prepare. RARA_ERROR_INVALID for a cut that is not configured or is another scene's,
+/// and for a camera with near or far planes, which would cut as well.
+///
+/// # Safety
+/// As for rara_renderer_configure. The cut lives until the frame's commands have executed.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_renderer_configure_cut(
+    renderer: *mut RaraRenderer,
+    scene: *const RaraSceneBuffers,
+    camera: *const RaraCamera,
+    cut: *const RaraCut,
+    settings: *const RaraSettings,
+    frame: *mut *mut RaraFrame,
+) -> RaraResult {
+    create(frame, "frame", || {
+        let cut = alive(cut, "cut")?;
+        configured(renderer, scene, camera, &cut.0, settings)
+    })
+}
+
+/// Configures a frame that shows what a clip or a cut keeps.
+unsafe fn configured<'a>(
+    renderer: *mut RaraRenderer,
+    scene: *const RaraSceneBuffers,
+    camera: *const RaraCamera,
+    kept: impl Into<Kept<'a>>,
+    settings: *const RaraSettings,
+) -> Result<RaraFrame> {
+    let mut renderer = alone(renderer, "renderer")?;
+    let scene = alive(scene, "scene")?;
+    let camera = camera::camera(camera)?;
+    let settings = settings::settings(settings)?;
+    let renderer = &mut renderer.0;
+    let frame = renderer.configure(&scene.buffers, &camera, kept.into(), &settings)?;
+    Ok(RaraFrame(FrameState::Configured(frame)))
 }
 
 /// Records a frame's stages up to the draw, outside any rendering scope. `depth` is null, or for a renderer whose

@@ -22,6 +22,7 @@ pub mod camera;
 pub mod camera_files;
 pub mod channels;
 pub mod clip;
+pub mod cut;
 pub mod depth;
 pub mod device;
 pub mod frame;
@@ -33,8 +34,6 @@ pub mod lent;
 pub mod load;
 pub mod logging;
 pub mod matrices;
-#[cfg(test)]
-mod nulls;
 mod numbering;
 pub mod picker;
 pub mod placement;
@@ -51,5 +50,3 @@ pub mod support;
 mod tests;
 mod text;
 pub mod upload;
-#[cfg(test)]
-mod versions;

@@ -80,7 +80,7 @@ pub unsafe extern "C" fn rara_camera_of_projection(
     })
 }
 
-/// As rara_camera_of_projection, of matrices in single precision.
+/// Does the same as rara_camera_of_projection, for matrices in single precision.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_camera_of_projection_floats(
     view: *const f32,

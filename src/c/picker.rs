@@ -1,11 +1,12 @@
 //! Picking: the Gaussians that a part of a picture shows most of.
 
 use rara::ash::vk;
-use rara::{PickTicket, Picker};
+use rara::{Kept, PickTicket, Picker, Result};
 
 use crate::boundary::{RaraResult, exclusive, guard, invalid, recording, shared};
 use crate::camera::{self, RaraCamera};
 use crate::clip::{self, RaraClip};
+use crate::cut::RaraCut;
 use crate::handles::{alive, alone, create, destroy};
 use crate::placement::RaraPlacement;
 use crate::renderer::RaraRenderer;
@@ -35,7 +36,7 @@ pub struct RaraPick {
     pub number: u32,
     /// The number of its layer.
     pub layer: u32,
-    /// What it adds to the alpha of the pixel, from 1/255 to 1; 0 where no splat adds as much, and then all is 0.
+    /// The alpha that the splat adds to the pixel, from 1/255 to 1. If no splat adds as much, it and all other fields are 0.
     pub alpha: f32,
 }
 
@@ -93,22 +94,67 @@ pub unsafe extern "C" fn rara_picker_record(
 ) -> RaraResult {
     guard(|| {
         let ticket = exclusive(ticket, "ticket")?;
-        let mut picker = alone(picker, "picker")?;
-        let scene = alive(scene, "scene")?;
-        let camera = camera::camera(camera)?;
         let clip = clip::clip(clip, "clip")?.unwrap_or_default();
-        let settings = settings::settings(settings)?;
-        let rect = vk::Rect2D {
-            offset: vk::Offset2D { x, y },
-            extent: vk::Extent2D { width, height },
-        };
-        let cmd = recording(cmd)?;
-        let picker = &mut picker.0;
-        let made = picker.record(cmd, &scene.buffers, &camera, &clip, &settings, rect)?;
-        let [picker, request] = made.numbers();
-        *ticket = RaraPickTicket { picker, request };
+        let rect = rect(x, y, width, height);
+        *ticket = asked(picker, cmd, scene, camera, &clip, settings, rect)?;
         Ok(())
     })
+}
+
+/// Does what rara_picker_record does, for a picture that shows a cut in place of a clip's. The commands of rara_cut_prepare come
+/// before in the queue.
+///
+/// # Safety
+/// As for rara_picker_record. The cut lives until the commands have executed.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_picker_record_cut(
+    picker: *mut RaraPicker,
+    cmd: vk::CommandBuffer,
+    scene: *const RaraSceneBuffers,
+    camera: *const RaraCamera,
+    cut: *const RaraCut,
+    settings: *const RaraSettings,
+    x: i32,
+    y: i32,
+    width: u32,
+    height: u32,
+    ticket: *mut RaraPickTicket,
+) -> RaraResult {
+    guard(|| {
+        let ticket = exclusive(ticket, "ticket")?;
+        let cut = alive(cut, "cut")?;
+        let rect = rect(x, y, width, height);
+        *ticket = asked(picker, cmd, scene, camera, &cut.0, settings, rect)?;
+        Ok(())
+    })
+}
+
+/// Records a request about a picture that shows what a clip or a cut keeps.
+unsafe fn asked<'a>(
+    picker: *mut RaraPicker,
+    cmd: vk::CommandBuffer,
+    scene: *const RaraSceneBuffers,
+    camera: *const RaraCamera,
+    kept: impl Into<Kept<'a>>,
+    settings: *const RaraSettings,
+    rect: vk::Rect2D,
+) -> Result<RaraPickTicket> {
+    let mut picker = alone(picker, "picker")?;
+    let scene = alive(scene, "scene")?;
+    let camera = camera::camera(camera)?;
+    let settings = settings::settings(settings)?;
+    let (cmd, kept) = (recording(cmd)?, kept.into());
+    let picker = &mut picker.0;
+    let made = picker.record(cmd, &scene.buffers, &camera, kept, &settings, rect)?;
+    let [picker, request] = made.numbers();
+    Ok(RaraPickTicket { picker, request })
+}
+
+fn rect(x: i32, y: i32, width: u32, height: u32) -> vk::Rect2D {
+    vk::Rect2D {
+        offset: vk::Offset2D { x, y },
+        extent: vk::Extent2D { width, height },
+    }
 }
 
 /// Writes the answer to a request: a pick for each pixel of the rectangle, row by row from the upper left. `*answered` is

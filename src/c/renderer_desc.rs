@@ -18,12 +18,13 @@ pub const RARA_BINDINGS_BOUND: RaraBindings = 1;
 /// buffers take, and run it faster than addresses alone. Needs what RARA_BINDINGS_BOUND needs.
 pub const RARA_BINDINGS_MIXED: RaraBindings = 2;
 
-/// What the numbers of the colour attachment stand for.
+/// The encoding of the colours in the colour attachment.
 pub type RaraColorSpace = u32;
-/// Colours as a display stores them, as splats are trained and blended: they meet the host's pixels as they are. The default.
+/// The attachment has colours as a display stores them (sRGB-encoded), as splats are trained. Splats are blended over its
+/// pixels without a conversion. The default.
 pub const RARA_COLOR_SPACE_STORED: RaraColorSpace = 0;
-/// Linear light, as of a host that lights in HDR: splats are blended as stored, and the picture that they make is turned into
-/// linear light once before it is blended over the host's pixels. Only tiles do so: another raster is refused, and so is a
+/// The attachment has linear light, as in a host that lights in HDR. Splats are blended as stored; the resulting picture is
+/// converted to linear light once and blended over the host's pixels. Only tiles do so: another raster is refused, and so is a
 /// depth that is not readable. A frame whose tiles have no room draws nothing, as RaraFrameStats::fell_back says.
 pub const RARA_COLOR_SPACE_LINEAR: RaraColorSpace = 1;
 
@@ -61,7 +62,7 @@ pub struct RaraRendererDesc {
     pub expected_depth_render_pass: vk::RenderPass,
     /// The subpass of expected_depth_render_pass to draw in.
     pub expected_depth_subpass: u32,
-    /// What the numbers of the colour attachment stand for.
+    /// The encoding of the colours in the colour attachment.
     pub color_space: RaraColorSpace,
 }
 

@@ -8,8 +8,9 @@ use crate::device::RaraDevice;
 use crate::frame::RaraFrame;
 use crate::handles::{alive, number};
 use crate::renderer::{RaraRenderer, with};
-use crate::scene::{RARA_SH_FORMAT_PACKED, RaraSceneBuffers, RaraShFormat, sh_format};
+use crate::scene::{RARA_SH_FORMAT_PACKED, RaraSceneBuffers, RaraShFormat};
 use crate::settings::RaraSettings;
+use crate::settings::choice;
 
 /// The most that frames will ask for, for rara_renderer_reserve.
 #[repr(C)]
@@ -71,7 +72,7 @@ impl RaraFrameLimits {
         let limits = FrameLimits::new((self.width, self.height), self.gaussians);
         let limits = limits
             .layers(self.layers)
-            .sh_format(sh_format(self.sh_format)?)
+            .sh_format(choice(self.sh_format, "sh_format")?)
             .planes(self.planes)
             .surfaces(self.surfaces)
             .pairs((self.pairs > 0).then_some(self.pairs));

@@ -3,9 +3,9 @@
 use std::ffi::CString;
 use std::sync::Arc;
 
-use rara::{Clip, Layer, LayerState, Result, Scene, SceneBuffers, ShFormat};
+use rara::{Clip, Layer, LayerState, Scene, SceneBuffers};
 
-use crate::boundary::{c_string, invalid};
+use crate::boundary::c_string;
 use crate::gaussians::RaraGaussians;
 use crate::handles::{destroy, number};
 use crate::numbering::{Numbers, numbers};
@@ -38,16 +38,6 @@ pub const RARA_SH_FORMAT_PACKED: RaraShFormat = 1;
 pub const RARA_SH_FORMAT_HALF: RaraShFormat = 2;
 /// 32-bit floats: 192 bytes.
 pub const RARA_SH_FORMAT_FLOAT: RaraShFormat = 3;
-
-pub(crate) fn sh_format(value: RaraShFormat) -> Result<ShFormat> {
-    Ok(match value {
-        RARA_SH_FORMAT_BYTE => ShFormat::Byte,
-        RARA_SH_FORMAT_PACKED => ShFormat::Packed,
-        RARA_SH_FORMAT_HALF => ShFormat::Half,
-        RARA_SH_FORMAT_FLOAT => ShFormat::Float,
-        _ => return invalid(format!("sh_format {value} is no RaraShFormat")),
-    })
-}
 
 /// A layer of a scene that is to be uploaded.
 pub(crate) struct HostLayer {

@@ -2,89 +2,90 @@
 
 use rara::ash::vk;
 use rara::{
-    Decay, ExactForm, Miss, Mode, PhiForm, Precision, Preset, Raster, Result, Settings, Show,
-    SortBy,
+    ClipOp, Decay, ExactForm, Miss, Mode, PhiForm, Precision, Preset, Raster, Result, Settings,
+    ShFormat, Show, SortBy,
 };
 
 use crate::boundary::{RaraResult, guard, invalid, read, versioned, write};
 
 /// How a clip treats the Gaussians that it cuts.
 pub type RaraMode = u32;
-/// No clipping.
+/// The clip has no effect.
 pub const RARA_MODE_NONE: RaraMode = 0;
-/// Keep or drop by the centre.
+/// Each splat is kept or dropped as a whole, by its centre.
 pub const RARA_MODE_HARD: RaraMode = 1;
-/// The paper's length ratio along each pixel's ray.
+/// The share is the paper's ratio of lengths along the ray of each pixel.
 pub const RARA_MODE_RARA: RaraMode = 2;
-/// The exact visible share of the splat, the low-pass of 3DGS included. The default.
+/// The share is the exact one, with the low-pass of 3DGS. The default.
 pub const RARA_MODE_EXACT: RaraMode = 3;
 
 /// The quantity that the weight w of a cut splat scales.
 pub type RaraDecay = u32;
 /// The mode's own: linear for RARA_MODE_RARA, depth for RARA_MODE_EXACT. The default.
 pub const RARA_DECAY_AUTO: RaraDecay = 0;
-/// Alpha: alpha' = alpha w (the paper).
+/// Scale alpha: alpha' = alpha w (the paper).
 pub const RARA_DECAY_LINEAR: RaraDecay = 1;
-/// Optical depth: alpha' = 1 - (1 - alpha)^w. Complementary halves rebuild the whole.
+/// Scale the optical depth: alpha' = 1 - (1 - alpha)^w. The two halves of a cut splat together give the whole splat.
 pub const RARA_DECAY_DEPTH: RaraDecay = 2;
 
 /// RARA_MODE_RARA only: what a cut splat keeps in a pixel whose ray misses the traced ellipsoid.
 pub type RaraMiss = u32;
-/// Everything (the paper's text).
+/// The splat keeps everything (the paper's text).
 pub const RARA_MISS_KEEP: RaraMiss = 0;
-/// Nothing (the paper's released code).
+/// The splat keeps nothing (the paper's released code).
 pub const RARA_MISS_DROP: RaraMiss = 1;
-/// All or nothing, by the side on which the ray's densest point lies. The default.
+/// The splat keeps everything if the clip keeps the densest point of the ray, else nothing. The default.
 pub const RARA_MISS_PEAK: RaraMiss = 2;
 
 /// RARA_MODE_EXACT only: the form of the weight.
 pub type RaraExactForm = u32;
-/// Affine in the pixel for small splats, perspective-exact for large ones (beam_switch). The default.
+/// Small splats get the affine form, and large ones the form that is exact in perspective (beam_switch). The default.
 pub const RARA_EXACT_FORM_AUTO: RaraExactForm = 0;
-/// Perspective-exact for every cut splat.
+/// Every cut splat gets the form that is exact in perspective.
 pub const RARA_EXACT_FORM_BEAM: RaraExactForm = 1;
-/// Affine for every cut splat.
+/// Every cut splat gets the affine form: its weight is computed as if the rays of all its pixels were parallel.
 pub const RARA_EXACT_FORM_AFFINE: RaraExactForm = 2;
 
-/// How splats become pixels. All give the same picture.
+/// How splats become pixels. All choices give the same picture.
 pub type RaraRaster = u32;
-/// The faster way on the device at hand. The default.
+/// The path that is faster on this device. The default.
 pub const RARA_RASTER_AUTO: RaraRaster = 0;
-/// VK_EXT_mesh_shader.
+/// Quads from mesh shaders (VK_EXT_mesh_shader).
 pub const RARA_RASTER_MESH: RaraRaster = 1;
-/// Instanced quads.
+/// Quads by instancing.
 pub const RARA_RASTER_QUAD: RaraRaster = 2;
-/// Tiles of pixels in a compute shader.
+/// A compute shader blends the splats of each tile of pixels.
 pub const RARA_RASTER_TILES: RaraRaster = 3;
 
-/// The quantity that a frame shows of its splats.
+/// The quantity that a frame shows.
 pub type RaraShow = u32;
-/// Their colours. The default.
+/// The splats' colours. The default.
 pub const RARA_SHOW_COLOUR: RaraShow = 0;
-/// The effect of the clip on them: a splat that it leaves whole is blue; one that it cuts goes from red, where the
-/// pixel keeps nothing, to yellow, where it keeps all.
+/// The weight of each splat, as a colour: blue for a splat that the clip leaves whole. A splat that the clip cuts goes from
+/// red, where the pixel keeps nothing of it, to yellow, where it keeps all.
 pub const RARA_SHOW_WEIGHT: RaraShow = 1;
-/// The number of splats that make the pixel: red, green and blue each. Only tiles count.
+/// The number of splats in the pixel, as red, green and blue. This needs tiles.
 pub const RARA_SHOW_COUNT: RaraShow = 2;
-/// The mean of the splats' colours, each weighted by its alpha, in no order. Only tiles make it.
+/// The mean of the splats' colours, each weighted by its alpha; their order has no effect. This needs tiles.
 pub const RARA_SHOW_MEAN: RaraShow = 3;
 
 /// The order in which splats are blended.
 pub type RaraSortBy = u32;
-/// The order that all visible layers ask for (glTF by distance, other files by depth), or by depth where they differ. The default.
+/// The order that the visible layers ask for (glTF by distance, other files by depth), or by depth if they ask for different
+/// orders. The default.
 pub const RARA_SORT_BY_SCENE: RaraSortBy = 0;
-/// The depth of their centres along the view axis orders them, as in 3DGS.
+/// Splats are sorted by the depths of their centres along the view axis, as in 3DGS.
 pub const RARA_SORT_BY_DEPTH: RaraSortBy = 1;
-/// The distance of their centres from the eye orders them.
+/// Splats are sorted by the distances of their centres from the eye.
 pub const RARA_SORT_BY_DISTANCE: RaraSortBy = 2;
 
-/// RARA_MODE_EXACT only: how the normal distribution's Phi is approximated, and the largest error.
+/// RARA_MODE_EXACT only: the approximation of the normal distribution function Phi.
 pub type RaraPhiForm = u32;
-/// 1.9e-5.
+/// A logistic function of an odd quintic. The largest error is 1.9e-5.
 pub const RARA_PHI_FORM_QUINTIC: RaraPhiForm = 0;
-/// 1.4e-4.
+/// A logistic function of an odd cubic. The largest error is 1.4e-4.
 pub const RARA_PHI_FORM_CUBIC: RaraPhiForm = 1;
-/// 9.5e-3, two levels of 255.
+/// A logistic function. The largest error is 9.5e-3, which is more than two of 255 levels.
 pub const RARA_PHI_FORM_LOGISTIC: RaraPhiForm = 2;
 
 /// A choice of all settings that give up exactness for time: phi, key_bits, beam_switch and transmittance_min.
@@ -102,19 +103,19 @@ pub const RARA_PRESET_FAST: RaraPreset = 2;
 pub struct RaraSettings {
     /// Set by rara_settings_default.
     pub struct_size: usize,
-    /// How cut Gaussians are treated.
+    /// How the clip treats the Gaussians that it cuts.
     pub mode: RaraMode,
     /// The quantity that the weight scales.
     pub decay: RaraDecay,
-    /// RARA_MODE_RARA: the traced ellipsoid, in standard deviations. Default: 3.
+    /// RARA_MODE_RARA: the radius of the traced ellipsoid, in standard deviations. Default: 3.
     pub sigma: f32,
-    /// RARA_MODE_RARA: what a missed pixel keeps.
+    /// RARA_MODE_RARA: what a cut splat keeps in a pixel whose ray misses the ellipsoid.
     pub miss: RaraMiss,
-    /// Ablation: treat every Gaussian as cut. Default: false.
+    /// True treats every Gaussian as cut. This is for the paper's ablation. Default: false.
     pub trace_all: vk::Bool32,
     /// RARA_MODE_EXACT: the form of the weight.
     pub form: RaraExactForm,
-    /// Highest spherical-harmonics degree to evaluate; -1 is the scene's own, and the default.
+    /// The highest degree of spherical harmonics to evaluate. -1, the default, is the scene's own.
     pub sh_degree: i32,
     /// How splats become pixels.
     pub raster: RaraRaster,
@@ -122,12 +123,12 @@ pub struct RaraSettings {
     pub show: RaraShow,
     /// RARA_MODE_EXACT: how Phi is approximated. The preset sets this and all fields below.
     pub phi: RaraPhiForm,
-    /// How many bits of the depths the sort compares at most, 8 to 32.
+    /// The largest number of bits of the depths that the sort compares, 8 to 32.
     pub key_bits: u32,
-    /// RARA_MODE_EXACT: a cut splat is perspective-exact where its largest deviation over its depth exceeds this. Zero
-    /// makes all of them exact.
+    /// RARA_MODE_EXACT: a cut splat gets the form that is exact in perspective if its largest deviation divided by its depth
+    /// exceeds this. With 0, all of them do.
     pub beam_switch: f32,
-    /// Tiles only: a pixel with less transmittance than this is saturated. Zero blends everything.
+    /// Tiles only: a pixel whose transmittance is below this is saturated. With 0, everything is blended.
     pub transmittance_min: f32,
     /// The order of the splats.
     pub sort_by: RaraSortBy,
@@ -135,157 +136,142 @@ pub struct RaraSettings {
 
 versioned!(RaraSettings);
 
-const MODES: [(RaraMode, Mode); 4] = [
-    (RARA_MODE_NONE, Mode::None),
-    (RARA_MODE_HARD, Mode::Hard),
-    (RARA_MODE_RARA, Mode::Rara),
-    (RARA_MODE_EXACT, Mode::Exact),
-];
-const DECAYS: [(RaraDecay, Option<Decay>); 3] = [
-    (RARA_DECAY_AUTO, None),
-    (RARA_DECAY_LINEAR, Some(Decay::Linear)),
-    (RARA_DECAY_DEPTH, Some(Decay::Depth)),
-];
-const MISSES: [(RaraMiss, Miss); 3] = [
-    (RARA_MISS_KEEP, Miss::Keep),
-    (RARA_MISS_DROP, Miss::Drop),
-    (RARA_MISS_PEAK, Miss::Peak),
-];
-const FORMS: [(RaraExactForm, ExactForm); 3] = [
-    (RARA_EXACT_FORM_AUTO, ExactForm::Auto),
-    (RARA_EXACT_FORM_BEAM, ExactForm::Beam),
-    (RARA_EXACT_FORM_AFFINE, ExactForm::Affine),
-];
-const RASTERS: [(RaraRaster, Raster); 4] = [
-    (RARA_RASTER_AUTO, Raster::Auto),
-    (RARA_RASTER_MESH, Raster::Mesh),
-    (RARA_RASTER_QUAD, Raster::Quad),
-    (RARA_RASTER_TILES, Raster::Tiles),
-];
-const SHOWS: [(RaraShow, Show); 4] = [
-    (RARA_SHOW_COLOUR, Show::Colour),
-    (RARA_SHOW_WEIGHT, Show::Weight),
-    (RARA_SHOW_COUNT, Show::Count),
-    (RARA_SHOW_MEAN, Show::Mean),
-];
-const ORDERS: [(RaraSortBy, Option<SortBy>); 3] = [
-    (RARA_SORT_BY_SCENE, None),
-    (RARA_SORT_BY_DEPTH, Some(SortBy::Depth)),
-    (RARA_SORT_BY_DISTANCE, Some(SortBy::Distance)),
-];
-const PHI_FORMS: [(RaraPhiForm, PhiForm); 3] = [
-    (RARA_PHI_FORM_QUINTIC, PhiForm::Quintic),
-    (RARA_PHI_FORM_CUBIC, PhiForm::Cubic),
-    (RARA_PHI_FORM_LOGISTIC, PhiForm::Logistic),
-];
-const PRESETS: [(RaraPreset, Preset); 3] = [
-    (RARA_PRESET_EXACT, Preset::Exact),
-    (RARA_PRESET_BALANCED, Preset::Balanced),
-    (RARA_PRESET_FAST, Preset::Fast),
-];
+/// A choice whose code in C is its place among all; where none may be chosen, 0 is none.
+pub(crate) trait Coded: Sized {
+    /// Its type in C.
+    const NAME: &'static str;
 
-/// The value that a code stands for; `what` has it and its C type, for the message.
-fn value<T: Copy>(table: &[(u32, T)], code: u32, what: (&str, &str)) -> Result<T> {
-    match table.iter().find(|row| row.0 == code) {
-        Some(&(_, value)) => Ok(value),
-        None => invalid(format!("{} {code} is no {}", what.0, what.1)),
-    }
+    fn from_code(code: u32) -> Option<Self>;
+    fn code(self) -> u32;
 }
 
-/// The code of a value, or 0 where C has none for it.
-fn code<T: PartialEq>(table: &[(u32, T)], value: T) -> u32 {
-    let row = table.iter().find(|row| row.1 == value);
-    row.map_or(0, |row| row.0)
+macro_rules! coded {
+    ($($of:ident)+) => {
+        $(impl Coded for $of {
+            const NAME: &'static str = concat!("Rara", stringify!($of));
+
+            fn from_code(code: u32) -> Option<Self> {
+                Self::ALL.get(code as usize).copied()
+            }
+
+            fn code(self) -> u32 {
+                let place = Self::ALL.iter().position(|value| *value == self);
+                place.map_or(0, |place| place as u32) // C has no code for what has no name
+            }
+        })+
+
+        /// The values that the constants of rara.h have, by their types and their names in Rust.
+        #[cfg(test)]
+        pub(crate) fn codes() -> Vec<(&'static str, String, u32)> {
+            let mut all = Vec::new();
+            $(all.extend($of::ALL.iter().map(|value| ($of::NAME, format!("{value:?}"), value.code())));)+
+            all
+        }
+    };
 }
 
-impl RaraSettings {
-    pub(crate) fn new(preset: Preset) -> Self {
-        let settings = Settings::default().precision(preset.precision());
-        // A host has a background of its own.
-        let (
-            mode,
-            decay,
-            sigma,
-            miss,
-            trace_all,
-            form,
-            _background,
-            sh_degree,
-            raster,
-            show,
-            sort_by,
-            precision,
-        ) = settings.fields();
-        // The first two belong to the target and the scene.
-        let (_target, _sh, phi, key_bits, beam_switch, transmittance_min) = precision.fields();
-        Self {
-            struct_size: size_of::<Self>(),
-            mode: mode_code(mode),
-            decay: code(&DECAYS, decay),
-            sigma,
-            miss: code(&MISSES, miss),
-            trace_all: trace_all.into(),
-            form: code(&FORMS, form),
-            sh_degree: sh_degree.map_or(-1, |degree| degree as i32),
-            raster: code(&RASTERS, raster),
-            show: code(&SHOWS, show),
-            phi: code(&PHI_FORMS, phi),
-            key_bits,
-            beam_switch,
-            transmittance_min,
-            sort_by: code(&ORDERS, sort_by),
+coded! { Mode Decay Miss ExactForm Raster Show SortBy PhiForm Preset ShFormat ClipOp }
+
+impl<T: Coded> Coded for Option<T> {
+    const NAME: &'static str = T::NAME;
+
+    fn from_code(code: u32) -> Option<Self> {
+        match code.checked_sub(1) {
+            Some(code) => T::from_code(code).map(Some),
+            None => Some(None),
         }
     }
 
-    pub(crate) fn settings(&self) -> Result<Settings> {
-        let Self {
-            struct_size: _,
-            mode: mode_code,
-            decay,
-            sigma,
-            miss,
-            trace_all,
-            form,
-            sh_degree,
-            raster,
-            show,
-            phi,
-            key_bits,
-            beam_switch,
-            transmittance_min,
-            sort_by,
-        } = *self;
-        // What belongs to the scene and the target, not to a frame, keeps its default.
-        let precision = Precision::default()
-            .phi(value(&PHI_FORMS, phi, ("settings->phi", "RaraPhiForm"))?)
-            .key_bits(key_bits)
-            .beam_switch(beam_switch)
-            .transmittance_min(transmittance_min);
-        Ok(Settings::default()
-            .mode(mode(mode_code)?)
-            .decay(value(&DECAYS, decay, ("settings->decay", "RaraDecay"))?)
-            .sigma(sigma)
-            .miss(value(&MISSES, miss, ("settings->miss", "RaraMiss"))?)
-            .trace_all(trace_all != 0)
-            .form(value(&FORMS, form, ("settings->form", "RaraExactForm"))?)
-            .sh_degree(u32::try_from(sh_degree).ok())
-            .raster(value(&RASTERS, raster, ("settings->raster", "RaraRaster"))?)
-            .show(value(&SHOWS, show, ("settings->show", "RaraShow"))?)
-            .sort_by(value(
-                &ORDERS,
-                sort_by,
-                ("settings->sort_by", "RaraSortBy"),
-            )?)
-            .precision(precision))
+    fn code(self) -> u32 {
+        self.map_or(0, |value| 1 + value.code())
     }
 }
 
-pub(crate) fn mode(code: RaraMode) -> Result<Mode> {
-    value(&MODES, code, ("settings->mode", "RaraMode"))
+/// The choice that a code stands for; `name` is for the message.
+pub(crate) fn choice<T: Coded>(code: u32, name: &str) -> Result<T> {
+    match T::from_code(code) {
+        Some(value) => Ok(value),
+        None => invalid(format!("{name} {code} is no {}", T::NAME)),
+    }
 }
 
-pub(crate) fn mode_code(mode: Mode) -> RaraMode {
-    code(&MODES, mode)
+/// A field's value in C.
+macro_rules! to_c {
+    (choice $value:expr) => {
+        $value.code()
+    };
+    (number $value:expr) => {
+        $value
+    };
+    (switch $value:expr) => {
+        $value.into()
+    };
+    (degree $value:expr) => {
+        $value.map_or(-1, |degree| degree as i32)
+    };
+}
+
+/// The value of a field in C.
+macro_rules! from_c {
+    (choice $value:expr, $name:ident) => {
+        choice($value, concat!("settings->", stringify!($name)))?
+    };
+    (number $value:expr, $name:ident) => {
+        $value
+    };
+    (switch $value:expr, $name:ident) => {
+        $value != 0
+    };
+    (degree $value:expr, $name:ident) => {
+        u32::try_from($value).ok()
+    };
+}
+
+/// Carries the fields of settings and of their precision to C and back.
+macro_rules! fields {
+    ($($field:ident as $kind:ident,)+ ; $($precise:ident as $precise_kind:ident,)+) => {
+        impl RaraSettings {
+            pub(crate) fn new(preset: Preset) -> Self {
+                let settings = Settings::default().precision(preset.precision());
+                Self {
+                    struct_size: size_of::<Self>(),
+                    $($field: to_c!($kind settings.$field),)+
+                    $($precise: to_c!($precise_kind settings.precision.$precise),)+
+                }
+            }
+
+            pub(crate) fn settings(&self) -> Result<Settings> {
+                let precision = Precision::default()
+                    $(.$precise(from_c!($precise_kind self.$precise, $precise)))+;
+                Ok(Settings::default()
+                    $(.$field(from_c!($kind self.$field, $field)))+
+                    .precision(precision))
+            }
+        }
+
+        /// How many fields of the library's settings and of their precision C has.
+        #[cfg(test)]
+        pub(crate) const FIELDS: [usize; 2] =
+            [[$(stringify!($field)),+].len(), [$(stringify!($precise)),+].len()];
+    };
+}
+
+fields! {
+    mode as choice,
+    decay as choice,
+    sigma as number,
+    miss as choice,
+    trace_all as switch,
+    form as choice,
+    sh_degree as degree,
+    raster as choice,
+    show as choice,
+    sort_by as choice,
+    ;
+    phi as choice,
+    key_bits as number,
+    beam_switch as number,
+    transmittance_min as number,
 }
 
 /// Reads a host's settings; null stands for the defaults.
@@ -305,8 +291,7 @@ pub unsafe extern "C" fn rara_settings_default(
     preset: RaraPreset,
 ) -> RaraResult {
     guard(|| {
-        let preset = value(&PRESETS, preset, ("preset", "RaraPreset"))?;
-        let default = RaraSettings::new(preset);
+        let default = RaraSettings::new(choice(preset, "preset")?);
         write(settings, settings_size, &default, "settings")
     })
 }

@@ -1,5 +1,8 @@
 //! Mistakes that a host can make without a device: impossible arguments, and structs of other versions.
 
+pub(crate) mod nulls;
+mod versions;
+
 use std::ffi::{CStr, CString};
 use std::ptr::{null, null_mut};
 
@@ -11,6 +14,7 @@ use crate::load::*;
 use crate::placement::*;
 use crate::settings::*;
 use crate::upload::*;
+use rara::{Precision, Settings};
 
 pub(crate) fn message() -> String {
     // SAFETY: a string of this thread, which is copied before its next call.
@@ -404,4 +408,28 @@ fn cameras_of_files() {
         }
     }
     std::fs::remove_file(&path).expect("is there");
+}
+
+#[test]
+fn codes_are_the_constants_of_the_header() {
+    let header = include_str!(concat!(env!("OUT_DIR"), "/rara.h"));
+    for (of, value, code) in codes() {
+        // "RaraPhiForm" and "Cubic" are RARA_PHI_FORM_CUBIC.
+        let words = of.chars().enumerate().flat_map(|(at, letter)| {
+            let between = (letter.is_uppercase() && at > 0).then_some('_');
+            between.into_iter().chain([letter.to_ascii_uppercase()])
+        });
+        let prefix: String = words.collect();
+        // These may be left out, which has the first code.
+        let code = code + u32::from(["RaraDecay", "RaraSortBy"].contains(&of));
+        let line = format!("#define {prefix}_{} {code}", value.to_uppercase());
+        assert!(header.lines().any(|own| own == line), "{line}");
+    }
+}
+
+#[test]
+fn every_setting_of_the_library_has_a_field() {
+    // A host has a background of its own; the formats of the target and of the harmonics belong to the target and the scene.
+    let all = [Settings::ALL.len() - 1, Precision::ALL.len() - 2];
+    assert_eq!(FIELDS, all);
 }

@@ -7,7 +7,8 @@ use crate::boundary::{RaraResult, exclusive, guard, recording};
 use crate::device::RaraDevice;
 use crate::handles::{alive, create};
 use crate::layer::{RaraLayer, given};
-use crate::scene::{self, RaraSceneBuffers, RaraShFormat, numbers_of, of_layers};
+use crate::scene::{RaraSceneBuffers, RaraShFormat, numbers_of, of_layers};
+use crate::settings::choice;
 use crate::staging::{self, RaraStaging};
 
 /// Uploads a scene of layers, one or several, which are all of one struct_size. Only this function and rara_renderer_channels
@@ -30,7 +31,7 @@ pub unsafe extern "C" fn rara_scene_buffers_upload(
         let layers = given(layers, layer_count)?;
         let numbers = numbers_of(&layers);
         let scene = of_layers(&layers, &numbers);
-        let format = scene::sh_format(sh_format)?;
+        let format = choice(sh_format, "sh_format")?;
         SceneBuffers::upload(&device.0, scene, format).map(RaraSceneBuffers::new)
     })
 }
@@ -48,7 +49,7 @@ pub unsafe extern "C" fn rara_scene_buffers_staging_bytes(
         let layers = given(layers, layer_count)?;
         let numbers = numbers_of(&layers);
         let scene = of_layers(&layers, &numbers);
-        *bytes = SceneBuffers::staging_bytes(scene, scene::sh_format(sh_format)?);
+        *bytes = SceneBuffers::staging_bytes(scene, choice(sh_format, "sh_format")?);
         Ok(())
     })
 }
@@ -87,7 +88,7 @@ pub unsafe extern "C" fn rara_scene_buffers_upload_with(
         let layers = given(layers, layer_count)?;
         let numbers = numbers_of(&layers);
         let scene = of_layers(&layers, &numbers);
-        let format = scene::sh_format(sh_format)?;
+        let format = choice(sh_format, "sh_format")?;
         SceneBuffers::upload_with(&device.0, cmd, staging, scene, format).map(RaraSceneBuffers::new)
     })
 }

@@ -7,31 +7,33 @@ use glam::DVec3;
 use rara::Camera;
 
 use super::failure::Failure;
-use super::json_kind::JsonKind;
-use super::lens::{Depths, Lens, Ortho, UP, ortho};
-use super::views::{Framing, NamedView, Views, picked};
-use super::{aspect, output, training, values};
-use rara::camera_files::{self, NamedCamera};
+use super::json_kind::{JsonKind, wanted};
+use super::views::{Framed, NamedView, Views, picked, say_up};
+use super::{aspect, output, up, values};
+use rara::camera_files::NamedCamera;
+use rara::scene::trained_folder;
+use rara_shots::{Depths, Framing, Lens, UP};
 
 pub(super) const HEADING: &str = "Camera";
 
 /// The camera's position and lens. Without any of these it frames what is visible of the scene.
 #[derive(Debug, Args)]
 #[command(next_help_heading = HEADING)]
-pub(super) struct CameraArgs {
-    /// The eye's position
+pub struct CameraArgs {
+    /// The position of the camera
     #[arg(long, value_name = "X,Y,Z", value_parser = values::vec3, allow_hyphen_values = true)]
     #[arg(conflicts_with_all = ["cameras", "camera"])]
     eye: Option<DVec3>,
-    /// The point that the eye looks at
+    /// The point that the camera looks at
     #[arg(long, value_name = "X,Y,Z", value_parser = values::vec3, allow_hyphen_values = true)]
     #[arg(conflicts_with_all = ["cameras", "camera"])]
     target: Option<DVec3>,
-    /// Direction that is up in the picture, as -y or 0,-1,0
+    /// Direction that is up in the picture, such as -y or 0,-1,0
     ///
-    /// y suits a scene that is upside down, z or -z one that lies on its side. By default -y, and where the camera
-    /// frames the scene the mean of the cameras beside it, if there are any; a section may have another. In a view
-    /// along it z is up, and -y in one along z.
+    /// Try y if the scene is upside down, and z or -z if it lies on its side. By default, up is the direction that the
+    /// comment "Vertical Axis" of a .ply gives. Without this comment it is -y, or, if the camera frames the scene, the mean
+    /// up direction of the cameras beside the scene, if there are any. A section has an up direction that depends on its
+    /// axis. If the camera looks along the up direction, z is up instead, or -y if the camera looks along z.
     #[arg(long, value_name = "X,Y,Z|AXIS", value_parser = values::direction, allow_hyphen_values = true)]
     #[arg(conflicts_with_all = ["cameras", "camera"])]
     up: Option<DVec3>,
@@ -44,54 +46,56 @@ pub(super) struct CameraArgs {
     )]
     #[arg(conflicts_with_all = ["cameras", "camera"])]
     fov_y: f64,
-    /// Draw without perspective, HEIGHT world units high, or fit all
+    /// Draw without perspective; show HEIGHT world units, or all (fit)
     ///
-    /// fit shows all that is visible, and goes without --eye.
+    /// The height of the picture is HEIGHT. fit shows everything that is visible, and cannot be combined with --eye.
     #[arg(long, value_name = "HEIGHT|fit", value_parser = ortho, allow_hyphen_values = true)]
     #[arg(conflicts_with_all = ["cameras", "camera", "fov_y"])]
     ortho: Option<Ortho>,
     /// Take cameras from a cameras.json, transforms.json, camera_path.json or COLMAP folder
     ///
-    /// With --view and without this flag the cameras are those beside the scene.
+    /// Other formats are a settings.json of SuperSplat, a project.opf of Pix4D and a glTF with cameras. A camera_path.json also
+    /// gives its crop box, its background colour, and the pictures per second of a film. If --view is given without --cameras,
+    /// the cameras are those in a file beside the scene, or in the scene's own file.
     #[arg(long, value_name = "FILE", conflicts_with = "camera")]
     cameras: Option<PathBuf>,
-    /// Choose from the cameras: N, NAME, N..M, several with commas, or all
+    /// Cameras to draw: all, N, NAME, N..M, or several with commas
     ///
-    /// Numbers count from 0, and a range has both of its ends. By default 0 with --cameras; without it the camera
-    /// frames the scene.
+    /// Numbers count from 0, and N..M includes N and M. With --cameras, the default is 0. Without --cameras and --view, the
+    /// camera frames the scene.
     #[arg(long, value_name = "N|NAME|N..M|all", conflicts_with_all = ["eye", "target", "ortho", "fov_y", "up"])]
     view: Option<String>,
-    /// Take one camera from a JSON file, as --save-camera writes it
+    /// Take the camera from a JSON file that --save-camera wrote
     ///
-    /// The file has width, height, fx, fy, cx, cy, world_to_camera (16 numbers, row-major), and perhaps
-    /// "projection": "orthographic"; fx and fy are then the pixels of a world unit. --json has the same under
-    /// "camera". With --view the file may hold a list of cameras.
+    /// The file has width, height, fx, fy, cx, cy and world_to_camera (16 numbers, row-major). It may have "projection":
+    /// "orthographic"; fx and fy are then in pixels per world unit. The JSON that --json prints has such a camera under
+    /// "camera". If --view is given, the file may have a list of cameras.
     #[arg(long, value_name = "FILE")]
     camera: Option<PathBuf>,
-    /// Draw the pinholes of cameras whose lenses bend straight lines
+    /// Ignore the distortion of lenses that bend straight lines
     ///
-    /// They have the same focal lengths and principal point, and no distortion: the pictures are those that a tool would make that
-    /// undistorts the photographs and leaves their size.
+    /// Each camera is drawn as a pinhole camera with the same focal lengths and principal point. The picture matches the
+    /// photograph if a tool removes the distortion of the photograph and keeps its size, focal lengths and principal point.
     #[arg(long)]
     undistort: bool,
-    /// Keep what is at this depth or deeper, world units
+    /// Clip away what is nearer than this depth, world units
     ///
-    /// It is a plane across the view axis, which moves with the camera, cuts every layer, and cuts splats as --mode
-    /// says.
+    /// This is a clip plane perpendicular to the view axis, which moves with the camera. It cuts every layer, and cuts splats as
+    /// --mode says.
     #[arg(long, value_name = "DEPTH", allow_hyphen_values = true)]
     clip_near: Option<f64>,
-    /// Keep what is at this depth or nearer
+    /// Clip away what is deeper than this depth, world units
     #[arg(long, value_name = "DEPTH", allow_hyphen_values = true)]
     clip_far: Option<f64>,
-    /// Draw splats whose centres are at this depth or deeper, world units
+    /// Leave out splats centred nearer than this depth [default: 0.2]
     ///
-    /// Each is drawn whole. By default 0.2.
+    /// The depth is in world units. Unlike --clip-near, this flag does not cut the other splats.
     #[arg(long, value_name = "DEPTH")]
     near_cut: Option<f64>,
-    /// Size of the picture [default: 1024x1024, or the camera file's]
+    /// Picture size [default: camera's or 1024x1024; rara view: 1280x720]
     ///
-    /// A window is 1280x720. Of another aspect than the camera file's the picture shows all that the camera sees,
-    /// undistorted, and more beside it.
+    /// If the aspect ratio differs from that of the camera in a file, the picture shows all that this camera sees, without
+    /// stretching, and more of the scene on two sides.
     #[arg(long, value_name = "WxH", value_parser = values::size)]
     size: Option<(u32, u32)>,
     /// Whether only the camera's place and its axes count.
@@ -99,9 +103,36 @@ pub(super) struct CameraArgs {
     is_around: bool,
 }
 
+/// The scale of an orthographic picture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Ortho {
+    /// World units that it is high.
+    Height(f64),
+    /// So high that it holds the scene.
+    Fit,
+}
+
+fn ortho(text: &str) -> Result<Ortho, String> {
+    match text.parse::<f64>() {
+        _ if text == "fit" => Ok(Ortho::Fit),
+        Ok(height) if height > 0.0 && height.is_finite() => Ok(Ortho::Height(height)),
+        _ => Err("expected the picture's height in world units, above zero, or `fit`".into()),
+    }
+}
+
 const DEFAULT_SIZE: (u32, u32) = (1024, 1024);
 /// Degrees.
 pub(super) const FOV_Y: f64 = 50.0;
+
+/// The cameras of a file where the Gaussians of these scenes are.
+fn placed(path: &Path, scenes: &[PathBuf]) -> Result<Vec<NamedCamera>, Failure> {
+    let placed = trained_folder::load_cameras(path, scenes)
+        .map_err(|error| wanted(JsonKind::Cameras, path, error))?;
+    for note in placed.notes {
+        output::say(format_args!("note: {note}"));
+    }
+    Ok(placed.cameras)
+}
 
 impl CameraArgs {
     /// True when `--view all` was typed: a run of several frames, however many there are.
@@ -186,15 +217,19 @@ impl CameraArgs {
         }
     }
 
+    /// The file of cameras that a flag names.
+    pub(super) fn chosen_file(&self) -> Option<&Path> {
+        self.cameras.as_deref().or(self.camera.as_deref())
+    }
+
     /// The file of the cameras: the one that is named, or the one beside a scene; `flag` asks for it.
     fn file(&self, scenes: &[PathBuf], flag: &str) -> Result<PathBuf, Failure> {
-        if let Some(file) = self.cameras.as_ref().or(self.camera.as_ref()) {
-            return Ok(file.clone());
+        if let Some(file) = self.chosen_file() {
+            return Ok(file.to_owned());
         }
-        let found = scenes.iter().find_map(|scene| training::cameras(scene));
-        let found = found.ok_or_else(|| {
+        let found = trained_folder::cameras_of(scenes).ok_or_else(|| {
             Failure::Usage(format!(
-                "{flag}: no cameras.json or transforms.json is beside the scene; name one by --cameras"
+                "{flag}: no cameras are in the scene, and no cameras.json or transforms.json is beside it; name one by --cameras"
             ))
         })?;
         output::say(format_args!(
@@ -219,8 +254,7 @@ impl CameraArgs {
             )));
         }
         let path = self.file(scenes, flag)?;
-        let loaded = training::load_cameras(&path, scenes)
-            .map_err(|error| JsonKind::Cameras.wanted(&path, error))?;
+        let loaded = placed(&path, scenes)?;
         let numbers = match wanted {
             None => (0..loaded.len()).collect(),
             Some(wanted) => {
@@ -234,7 +268,7 @@ impl CameraArgs {
             Ok(NamedView {
                 number: *number,
                 name: named.name().to_owned(),
-                camera: self.depths().camera(self.sized(self.drawn(named)?)?)?,
+                camera: self.cut(self.sized(self.drawn(named)?)?)?,
             })
         };
         let views = numbers.iter().map(view).collect::<Result<_, Failure>>()?;
@@ -275,6 +309,11 @@ impl CameraArgs {
         }
     }
 
+    /// The camera that cuts at the depths of the flags.
+    fn cut(&self, camera: Camera) -> Result<Camera, Failure> {
+        self.depths().camera(camera).map_err(Failure::usage)
+    }
+
     fn depths(&self) -> Depths {
         Depths {
             near: self.clip_near,
@@ -284,23 +323,34 @@ impl CameraArgs {
     }
 
     /// The cameras that the flags mean, also of files beside these scenes; reads their files.
-    pub(super) fn meant(&self, scenes: &[PathBuf]) -> Result<Views, Failure> {
-        let (size, depths) = (self.chosen_size(), self.depths());
+    pub fn meant(&self, scenes: &[PathBuf]) -> Result<Views, Failure> {
+        let size = self.chosen_size();
+        if let (Some(_), Some(Ortho::Fit)) = (self.eye, self.ortho) {
+            return Err(Failure::Usage(
+                "--ortho fit places the camera itself: give a height with --eye".into(),
+            ));
+        }
         let lens = match self.ortho {
             None => Lens::Perspective(self.fov_y),
             Some(Ortho::Height(height)) => Lens::Orthographic(Some(height)),
             Some(Ortho::Fit) => Lens::Orthographic(None),
         };
         if let (Some(eye), Some(target)) = (self.eye, self.target) {
-            let camera = lens.look((eye, target), self.up.unwrap_or(UP), size)?;
+            let up = self
+                .up
+                .or_else(|| trained_folder::stated_up(scenes))
+                .unwrap_or(UP);
+            let camera = lens.look((eye, target), up, size);
+            let camera = camera.map_err(Failure::usage)?;
+            say_up(&camera, up);
             return Ok(Views::Given(vec![NamedView {
                 number: 0,
                 name: "camera".into(),
-                camera: depths.camera(camera)?,
+                camera: self.cut(camera)?,
             }]));
         }
         if let (Some(path), None) = (&self.camera, &self.view) {
-            let camera = depths.camera(self.sized(self.only(path, scenes)?)?)?;
+            let camera = self.cut(self.sized(self.only(path, scenes)?)?)?;
             return Ok(Views::Given(vec![NamedView {
                 number: 0,
                 name: path.display().to_string(),
@@ -308,17 +358,11 @@ impl CameraArgs {
             }]));
         }
         if self.cameras.is_none() && self.view.is_none() {
-            let (up, note) = training::up_of(self.up, scenes);
-            let framed = Framing {
-                up,
-                lens,
-                size,
-                depths,
-                eye: self.eye,
-                target: self.target,
-                note,
-            };
-            return framed.checked().map(Views::Framed);
+            let (up, note) = up::up_of(self.up, scenes);
+            let framing = Framing::new(lens, size).up(up).depths(self.depths());
+            let framing = framing.eye(self.eye).target(self.target);
+            framing.check().map_err(Failure::usage)?;
+            return Ok(Views::Framed(Framed { framing, note }));
         }
         let one = [self.view.clone().unwrap_or_else(|| "0".into())];
         let wanted = (!self.all()).then_some(&one[..]);
@@ -335,11 +379,7 @@ impl CameraArgs {
 
     /// The camera of a file that has one.
     fn only(&self, path: &Path, scenes: &[PathBuf]) -> Result<Camera, Failure> {
-        // A single camera is what the file should have.
-        let loaded = training::load_cameras(path, scenes).map_err(|error| {
-            let of_one = camera_files::load_camera(path).err().unwrap_or(error);
-            JsonKind::Cameras.wanted(path, of_one)
-        })?;
+        let loaded = placed(path, scenes)?;
         match &loaded[..] {
             [only] => {
                 let camera = self.drawn(only)?;

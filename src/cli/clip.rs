@@ -4,138 +4,182 @@ use std::cell::LazyCell;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use rara::clip::{Expression, NamedClip, Solid, clips_to_json, load_clips};
-use rara::{Bounds, Clip, ClipOp, Plane, Scene};
+use rara::clip::{Expression, NamedClip, Solid, are_alternatives, clips_to_json, load_clips};
+use rara::{Bounds, Clip, ClipOp, Plane, Scene, Shape};
 
 use super::failure::Failure;
-use super::json_kind::JsonKind;
+use super::json_kind::{JsonKind, wanted};
+use super::layer_names;
 use super::output;
-use super::region::Region;
-use super::scene_file::LayerClip;
-use super::scene_layers::{LoadedLayer, SceneLayers};
 use super::values;
+use rara::scene::layers::{LayerClip, LoadedLayer, Region, SceneLayers};
 
 /// The clip: the parts to cut away.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Clip")]
-pub(super) struct ClipArgs {
+pub struct ClipArgs {
     /// Keep the inside of a shape (repeatable); '!SHAPE' keeps its outside
     #[arg(long, value_name = "SHAPE", value_parser = Region::shape, allow_hyphen_values = true, long_help = shapes())]
     clip: Vec<Region>,
     /// Keep what an expression of shapes keeps: all(...), any(...), not(...)
     ///
-    /// all(...) keeps what all of its operands keep, any(...) what at least one keeps, not(...) what its operand
-    /// does not keep, as in 'all(box:0,0,0,1,1,1, not(sphere:1,0,0,.5))'. The flag is repeatable.
+    /// all(...) keeps the points that all of its operands keep. any(...) keeps the points that at least one operand keeps.
+    /// not(...) keeps the points that its operand does not keep. An example is
+    /// 'all(box:0,0,0,1,1,1, not(sphere:1,0,0,.5))'. The flag is repeatable.
     #[arg(long, value_name = "EXPRESSION", value_parser = str::parse::<Region>, allow_hyphen_values = true)]
     clip_expr: Vec<Region>,
     /// Take clips from a JSON file (repeatable)
     ///
-    /// The file is a list of planes, {"normal":[x,y,z],"d":d}, or of expressions as trees, {"clip":{"all":[...]}},
-    /// as --save-clip writes them, each with a "name" or without. :NAME takes the clips of that name, or the one of
-    /// that number (from 0), and :* takes all of them. A file of several clips with names needs one of these. The
-    /// file's clips of single layers are taken as well, unless the name is that of one of these.
+    /// The file is a list of planes, {"normal":[x,y,z],"d":d}, and of expressions as trees, {"clip":{"all":[...]}}, as
+    /// --save-clip writes them. Each may have a "name". :NAME takes the clips of that name, or the clip of that number (from
+    /// 0), and :* takes all clips. A file that has several clips with names needs :NAME or :*. The file may also have clips of
+    /// single layers; they are taken too, unless NAME is the name of one of them.
     #[arg(long, value_name = "FILE[:NAME]")]
     clip_file: Vec<String>,
-    /// Write the clip to a JSON file, which --clip-file reads
+    /// Write the clip to a JSON file for --clip-file
     ///
-    /// A section's own plane is not in it. Shares of the scene are written as the places that they mean.
-    #[arg(long, value_name = "FILE")]
+    /// The plane of a --section is not written. Positions such as x=40% are written as coordinates. rara view writes the clip
+    /// that it shows when the window closes.
+    #[arg(long, value_name = "FILE", value_parser = values::one_file())]
     save_clip: Option<PathBuf>,
-    /// Keep what is in all shapes, or what is in any of them
-    #[arg(long, value_name = "OP", default_value = "and")]
+    /// Keep what is inside all shapes (and), or inside at least one of them (or)
+    #[arg(long, value_name = "OP", value_parser = values::named::<ClipOp>(), default_value = ClipOp::default().name())]
     clip_op: ClipOp,
 }
 
 fn shapes() -> String {
     let usages: Vec<&str> = Solid::usages().collect();
     format!(
-        "Keep the inside of a shape (repeatable); '!SHAPE' keeps its outside\n\n{} plane:x=40% lies across an axis at 40 % of \
-         the scene's robust bounds and keeps what lies beyond; slab:z=40%..60% lies between two shares. Shells need single \
-         quotes around a leading !: '!box:0,0,0,1,1,1'.",
+        "Keep the inside of a shape (repeatable); '!SHAPE' keeps its outside\n\n{} plane:x=40% is \
+         perpendicular to the x axis at 40 % of the scene's robust bounds, and keeps the side of larger x. slab:z=40%..60% is \
+         between two such planes. In a shell, put single quotes around a leading !: '!box:0,0,0,1,1,1'.",
         usages.join(" ")
     )
 }
 
 /// The clip that flags make, before the scene is known in which parts of it may lie at shares.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Regions {
+pub struct Regions {
     all: Vec<Region>,
     op: ClipOp,
     /// The clips of single layers that files have.
     layers: Vec<(String, LayerClip)>,
     save: Option<PathBuf>,
+    /// A shape of whose inside alone the others keep something.
+    within: Option<Shape>,
 }
 
 impl Regions {
+    /// The same inside of a shape alone.
+    pub(super) fn within(self, shape: Shape) -> Self {
+        Self {
+            within: Some(shape),
+            ..self
+        }
+    }
+
+    /// How the [expressions](Self::expressions) combine.
     pub(super) fn op(&self) -> ClipOp {
-        self.op
+        match self.within {
+            Some(_) => ClipOp::And,
+            None => self.op,
+        }
     }
 
     pub(super) fn is_empty(&self) -> bool {
-        self.all.is_empty()
+        self.all.is_empty() && self.within.is_none()
     }
 
     pub(super) fn expressions(&self, scene: &Scene<'_>) -> rara::Result<Vec<Expression>> {
         let bounds = LazyCell::new(|| Bounds::of(scene.clone()));
-        self.all
-            .iter()
-            .map(|region| region.resolve(|| *bounds))
-            .collect()
+        let typed = self.all.iter().map(|region| region.resolve(|| *bounds));
+        let mut all = typed.collect::<rara::Result<Vec<_>>>()?;
+        if let Some(within) = self.within {
+            if self.op == ClipOp::Or && all.len() > 1 {
+                all = vec![Expression::Any(all)];
+            }
+            all.push(Expression::Shape(within));
+        }
+        Ok(all)
     }
 
     /// Gives layers the clips that files have for them, unless a flag says otherwise, and saves all clips where that is wanted.
-    pub(super) fn settle(&self, loaded: &mut SceneLayers) -> Result<(), Failure> {
+    pub fn settle(&self, loaded: &mut SceneLayers) -> Result<(), Failure> {
         for (name, clip) in &self.layers {
-            for layer in loaded.named("--clip-file", name)? {
+            for layer in layer_names::named(loaded, "--clip-file", name)? {
                 if layer.clip == layer.listed.clip {
                     layer.clip = Some(clip.clone());
                 }
             }
         }
+        if !self.is_empty() {
+            layer_names::tell_own_clips(loaded);
+        }
         Ok(self.save(loaded)?)
     }
 
-    pub(super) fn clip(&self, scene: &Scene<'_>) -> rara::Result<Clip> {
-        Ok(joined(&self.expressions(scene)?, self.op))
+    pub fn clip(&self, scene: &Scene<'_>) -> rara::Result<Clip> {
+        Ok(joined(&self.expressions(scene)?, self.op()))
     }
 
-    /// Writes the clip to a file as one expression, and the layers' own clips, where that is wanted.
+    /// Writes the clip, and the layers' own clips, where that is wanted.
     fn save(&self, loaded: &SceneLayers) -> rara::Result<()> {
         let Some(path) = &self.save else {
             return Ok(());
         };
-        let mut all = self.expressions(&loaded.scene())?;
-        let clip = match (all.len(), self.op) {
-            (1, _) => all.remove(0),
-            (_, ClipOp::And) => Expression::All(all),
-            (_, ClipOp::Or) => Expression::Any(all),
-        };
-        let name = path
-            .file_stem()
-            .unwrap_or_default()
-            .to_string_lossy()
-            .into();
-        let of_all = NamedClip {
-            name,
-            clip,
-            layer: None,
-        };
-        let of_one = |layer: &LoadedLayer| {
-            Some(NamedClip {
-                name: layer.name.clone(),
-                clip: layer.clip.as_ref()?.expression(),
-                layer: Some(layer.name.clone()),
-            })
-        };
-        let layers = loaded.layers.iter().filter_map(of_one);
-        let clips: Vec<_> = [of_all].into_iter().chain(layers).collect();
-        output::text(path, &clips_to_json(&clips))
+        let own = |layer: &LoadedLayer| Some((layer.name.clone(), layer.clip.clone()?));
+        let layers = loaded.layers.iter().filter_map(own);
+        save(
+            path,
+            self.expressions(&loaded.scene())?,
+            self.op(),
+            layers.collect(),
+        )
     }
 }
 
+/// Writes a clip to a file as one expression, and the layers' own clips.
+pub(super) fn save(
+    path: &Path,
+    mut all: Vec<Expression>,
+    op: ClipOp,
+    layers: Vec<(String, LayerClip)>,
+) -> rara::Result<()> {
+    let clip = match (all.len(), op) {
+        (1, _) => all.remove(0),
+        (0, _) | (_, ClipOp::And) => Expression::All(all),
+        (_, ClipOp::Or) => Expression::Any(all),
+    };
+    let name = path
+        .file_stem()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into();
+    let of_all = NamedClip {
+        name,
+        clip,
+        layer: None,
+    };
+    let of_one = |(name, clip): (String, LayerClip)| NamedClip {
+        name: name.clone(),
+        clip: clip.expression(),
+        layer: Some(name),
+    };
+    let clips: Vec<_> = std::iter::once(of_all)
+        .chain(layers.into_iter().map(of_one))
+        .collect();
+    output::text(path, &clips_to_json(&clips))
+}
+
 impl ClipArgs {
+    /// The file that the clip is to be written to once it is known, which is not when the flags are read.
+    #[cfg(feature = "view")]
+    pub(super) fn take_save(&mut self) -> Option<PathBuf> {
+        self.save_clip.take()
+    }
+
     /// The clip that the flags mean; reads its files.
-    pub(super) fn meant(&self) -> Result<Regions, Failure> {
+    pub fn meant(&self) -> Result<Regions, Failure> {
         let mut all = self.clip.clone();
         let mut layers = Vec::new();
         for text in &self.clip_file {
@@ -172,6 +216,7 @@ impl ClipArgs {
             op: self.clip_op,
             layers: Vec::new(),
             save: self.save_clip.clone(),
+            within: None,
         })
     }
 
@@ -197,15 +242,8 @@ pub(super) fn joined(all: &[Expression], op: ClipOp) -> Clip {
 /// The name that stands for all clips of a file.
 const ALL: &str = "*";
 
-/// True for several clips that have names, of which one is meant. The clips of single layers are none of these.
-pub(super) fn are_alternatives(clips: &[NamedClip]) -> bool {
-    let of_all = clips.iter().filter(|clip| clip.layer.is_none()).count();
-    let mut named = clips.iter().enumerate();
-    of_all > 1 && named.any(|(number, clip)| clip.name != number.to_string())
-}
-
 fn load(path: &Path) -> Result<Vec<NamedClip>, Failure> {
-    load_clips(path).map_err(|error| JsonKind::Clips.wanted(path, error))
+    load_clips(path).map_err(|error| wanted(JsonKind::Clips, path, error))
 }
 
 /// The clips of `FILE` or `FILE:NAME`. Names and paths may hold colons: a file that exists goes before a name.
@@ -265,89 +303,4 @@ fn from_file(text: &str) -> Result<Vec<NamedClip>, Failure> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use glam::DVec3;
-
-    fn clip(shapes: &[&str], clip_op: ClipOp) -> Result<Clip, Failure> {
-        let clip = shapes.iter().map(|s| Region::shape(s).unwrap()).collect();
-        let clip_file = Vec::new();
-        let args = ClipArgs {
-            clip,
-            clip_expr: Vec::new(),
-            clip_file,
-            save_clip: None,
-            clip_op,
-        };
-        Ok(args.meant()?.clip(&Scene::default())?)
-    }
-
-    fn keeps(clip: &Clip, x: f64, y: f64, z: f64) -> bool {
-        clip.keeps(DVec3::new(x, y, z))
-    }
-
-    #[test]
-    fn planes_flip() {
-        let half = clip(&["plane:2,0,0,-1"], ClipOp::And).unwrap();
-        assert!(keeps(&half, 0.6, 0.0, 0.0) && !keeps(&half, 0.4, 0.0, 0.0));
-        let other = clip(&["!plane:2,0,0,-1"], ClipOp::And).unwrap();
-        assert!(!keeps(&other, 0.6, 0.0, 0.0) && keeps(&other, 0.4, 0.0, 0.0));
-    }
-
-    #[test]
-    fn boxes_keep_inside_or_outside_whatever_the_operation_says_when_alone() {
-        for op in [ClipOp::And, ClipOp::Or] {
-            let inside = clip(&["box:1,2,3,0.5,1,2"], op).unwrap();
-            let outside = clip(&["!box:1,2,3,0.5,1,2"], op).unwrap();
-            for (point, within) in [
-                ([1.4, 2.9, 4.9], true),
-                ([0.6, 1.1, 1.1], true),
-                ([1.6, 2.0, 3.0], false),
-                ([1.0, 0.9, 3.0], false),
-                ([1.0, 2.0, 5.1], false),
-            ] {
-                let [x, y, z] = point;
-                assert_eq!(keeps(&inside, x, y, z), within, "{point:?}");
-                assert_eq!(keeps(&outside, x, y, z), !within, "{point:?}");
-            }
-        }
-    }
-
-    #[test]
-    fn a_box_turns_with_its_quaternion() {
-        // A quarter turn about z, not normalised: the long side comes to lie along y.
-        let turned = clip(&["box:0,0,0,3,1,1,5,0,0,5"], ClipOp::And).unwrap();
-        assert!(keeps(&turned, 0.0, 2.9, 0.0) && !keeps(&turned, 2.0, 0.0, 0.0));
-    }
-
-    #[test]
-    fn shapes_of_any_kind_combine() {
-        let flat = clip(&["box:0,0,0,1,1,1", "plane:1,0,0,0"], ClipOp::And).unwrap();
-        assert!(flat.is_flat() && flat.surfaces.len() == 7);
-        let bitten = clip(&["!box:0,0,0,1,1,1", "plane:1,0,0,0"], ClipOp::And).unwrap();
-        assert!(keeps(&bitten, 1.5, 0.0, 0.0) && !keeps(&bitten, 0.5, 0.0, 0.0));
-        let both = clip(&["box:0,0,0,1,1,1", "sphere:3,0,0,1"], ClipOp::Or).unwrap();
-        assert!(keeps(&both, 0.5, 0.0, 0.0) && keeps(&both, 3.5, 0.0, 0.0));
-        assert!(!keeps(&both, 1.5, 0.0, 0.0));
-    }
-
-    #[test]
-    fn nonsense_is_refused() {
-        for text in [
-            "plane",
-            "plane:1,2,3",
-            "plane:0,0,0,1",
-            "plane:nan,0,0,1",
-            "plane:1,0,0,inf",
-            "box:0,0,0,1,1",
-            "box:0,0,0,1,0,1",
-            "box:0,0,0,1,1,1,0,0,0,0",
-            "sphere:0,0,0,0",
-            "cylinder:0,0,0,0,0,0,1",
-            "cone:1",
-            "",
-        ] {
-            assert!(Region::shape(text).is_err(), "{text}");
-        }
-    }
-}
+mod tests;

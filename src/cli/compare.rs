@@ -3,15 +3,18 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use clap::builder::TypedValueParser;
 use rara::Picture;
+use rara_reference::comparison::{Comparison, compare};
+use rara_reference::differences::differences;
+use rara_reference::maps;
 use serde::Serialize;
 
 use super::failure::Failure;
-use super::{ink, output, values};
-use rara_lab::maps;
-use rara_lab::measure::{self, Comparison};
+use super::{output, values};
+use rara_scene::picture::ink;
 
-/// Measure how far two pictures are apart
+/// Measure the difference between two pictures
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
@@ -20,11 +23,12 @@ Examples:
   rara compare cut.png whole.png --background white
   rara compare picture.png reference.png --map errors.png
 
-Red, green and blue are compared over the background, and alpha on a line of its own. Differences are on a scale of 0 to 255. \
-SSIM uses a Gaussian window of 11x11 pixels with a sigma of 1.5, K1 = 0.01, K2 = 0.03 and a data range of 1, and is the mean \
-over pixels and channels. Equal pictures have no PSNR: it is null in the JSON. The measures are printed even if a limit is \
-exceeded, which is exit status 1. The map of --map has in each pixel the largest difference of a channel over the background, \
-from light to dark on a logarithmic scale whose equal steps look equal; white is less than 0.1 of 255.")]
+Red, green and blue are compared after both pictures are drawn over the background. Alpha is compared too, on a line of \
+its own. Differences are on a scale of 0 to 255. SSIM is the mean over pixels and channels, with a Gaussian window of \
+11x11 pixels, a sigma of 1.5, K1 = 0.01, K2 = 0.03 and a data range of 1. Equal pictures have no PSNR; the JSON then has \
+null. If a limit is not met, the measures are still printed, and the exit status is 1. In the map of --map, the colour of \
+a pixel shows the largest difference of red, green and blue, from light to dark on a logarithmic scale. White means a \
+difference of less than 0.1.")]
 pub(super) struct Compare {
     /// A picture, .png or .exr
     a: PathBuf,
@@ -33,16 +37,16 @@ pub(super) struct Compare {
     /// The colour behind both pictures
     #[arg(long, value_name = "COLOUR", value_parser = values::colour, default_value = "black")]
     background: [f32; 3],
-    /// Fail if the PSNR is less than this, dB; equal pictures never fail
+    /// Fail if the PSNR is less than this, in dB; equal pictures never fail
     #[arg(long, value_name = "DB", value_parser = values::finite, allow_hyphen_values = true)]
     min_psnr: Option<f64>,
-    /// Fail if the mean difference is more than this, of 255
+    /// Fail if the mean difference is more than this, on a scale of 0 to 255
     #[arg(long, value_name = "L1", value_parser = values::finite, allow_hyphen_values = true)]
     max_l1: Option<f64>,
-    /// File for a map of the differences, .png or .exr, with its scale below
-    #[arg(long, value_name = "FILE", value_parser = values::picture_file())]
+    /// Write a map of the differences with a colour scale below it, .png or .exr
+    #[arg(long, value_name = "FILE", value_parser = values::one_file().try_map(|path| values::picture_path(path.into())))]
     map: Option<PathBuf>,
-    /// Print the measures as JSON to stdout
+    /// Print the measures as JSON to standard output
     #[arg(long)]
     json: bool,
 }
@@ -106,9 +110,9 @@ struct Apart {
 impl Apart {
     fn new(a: &Picture, b: &Picture, background: [f32; 3]) -> rara::Result<Self> {
         let alpha = |picture: &Picture| opaque(picture, |[.., a]| [a; 3]);
-        let alpha = measure::differences(&alpha(a), &alpha(b))?;
+        let alpha = differences(&alpha(a), &alpha(b))?;
         Ok(Self {
-            colours: measure::compare(&over(a, background), &over(b, background))?.into(),
+            colours: compare(&over(a, background), &over(b, background))?.into(),
             alpha_l1: alpha.l1,
             alpha_max: alpha.max,
         })
@@ -177,7 +181,7 @@ const PAPER: [f32; 4] = [0.85, 0.85, 0.85, 1.0];
 impl Compare {
     pub(super) fn run(self) -> Result<(), Failure> {
         if let Some(file) = &self.map {
-            if file == Path::new(values::STANDARD) {
+            if file == Path::new(output::STANDARD) {
                 let message = "--map -: standard output gets the measures; name a file";
                 return Err(Failure::Usage(message.into()));
             }

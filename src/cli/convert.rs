@@ -4,17 +4,18 @@ use std::path::PathBuf;
 
 use clap::Args;
 use glam::{DQuat, DVec3};
-use rara::scene::{self, Annotations, Part, SaveOptions};
+use rara::scene::{self, Annotations, Format, Part, SaveOptions};
 use rara::{Clip, LayerState, Placement};
 use serde::Serialize;
+use serde_json::json;
 
-use super::clip::ClipArgs;
+use super::clip::{ClipArgs, Regions};
 use super::failure::Failure;
 use super::output::{self, counted, say};
-use super::scene_layers::LoadedLayer;
+use super::pattern::{is_several, scene_files};
 use super::scenes::SceneArgs;
-use super::select::{self, LayerRemains, Numbers};
-use super::{trained, values};
+use super::{trained, up, values};
+use rara::scene::layers::{FileNumbers, LayerRemains, LoadedLayer, SceneLayers, joined, without};
 
 /// Write a scene in another format
 #[derive(Debug, Args)]
@@ -25,37 +26,39 @@ Examples:
   rara convert scene.ply -o core.compressed.ply --clip sphere:0,0,0,2 --min-opacity 0.01
   rara convert scene.splat -o turned.glb --rotate 1,0,0,180 --scale 0.1 --move 0,1,0
   rara convert body.ply organ.ply -o both.sog --sh-degree 1
+  rara convert body.ply organ.ply -o small_{{}}.spz
 
-OUT's name says the format; it ends in {}. Several scenes become one; where their list places, fades or hides layers, the Gaussians are
-placed and faded, and hidden layers are left out.
+The extension of OUT chooses the format: {}. Several scenes are joined into one file. With {{}} in OUT, each scene is
+converted by itself, into a file with the scene's name in place of {{}}. If a list of layers places or fades layers, their
+Gaussians are written as placed and faded. Hidden layers are left out.
 
---clip and the like keep whole Gaussians by their centres, in the space of the scene as it was read; `rara bake` cuts
-them. After the clip, the scene is scaled, then turned, then moved.", scene::Format::endings()))]
+--clip and the other clip flags keep or drop whole Gaussians by their centres, in the coordinates of the scene that was read;
+`rara bake` cuts Gaussians. After the clip, the scene is scaled, then turned, then moved.", Format::endings()))]
 pub(super) struct Convert {
-    /// The file to write; its name says the format
+    /// File to write; its extension chooses the format; {} becomes the name of each SCENE
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
-    /// Leaves out what is less opaque
+    /// Leave out Gaussians with a smaller opacity, 0 to 1
     #[arg(long, value_name = "A", value_parser = values::share)]
     min_opacity: Option<f32>,
-    /// Leaves out spherical harmonics above a degree
+    /// Leave out spherical harmonics above degree N, 0 to 3
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=3))]
     sh_degree: Option<u32>,
-    /// Scales the scene about the origin
+    /// Scale the scene about the origin
     #[arg(long, value_name = "K", value_parser = values::positive, allow_hyphen_values = true)]
     scale: Option<f32>,
-    /// Turns the scene about an axis through the origin, by degrees
+    /// Turn the scene about the axis X,Y,Z through the origin, by DEGREES
     #[arg(long, value_name = "X,Y,Z,DEGREES", value_parser = values::turn, allow_hyphen_values = true)]
     rotate: Option<DQuat>,
-    /// Moves the scene
+    /// Move the scene by X,Y,Z world units
     #[arg(long = "move", value_name = "X,Y,Z", value_parser = values::vec3, allow_hyphen_values = true)]
     offset: Option<DVec3>,
     /// The version of a .spz file
     ///
-    /// 2 is for older programs. 4 is compressed with zstd in place of gzip, and needs programs of 2026.
+    /// Older programs need version 2. Version 4 is compressed with zstd instead of gzip; programs from before 2026 cannot read it.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=4), default_value_t = SaveOptions::default().spz_version)]
     spz_version: u32,
-    /// Print what was done as JSON to stdout
+    /// Print a report as JSON to standard output
     #[arg(long)]
     json: bool,
     #[command(flatten)]
@@ -82,32 +85,93 @@ struct ConvertJson {
     notes: Vec<String>,
 }
 
+impl ConvertJson {
+    /// Says to people what was left out and what was written.
+    fn say(&self) {
+        for (count, why) in [
+            (self.hidden, "in hidden layers"),
+            (self.clipped, "outside the clip"),
+            (self.faint, "too faint"),
+            (self.lost, "beyond single precision where they are placed"),
+        ] {
+            if count > 0 {
+                say(format_args!(
+                    "left out {} {why}",
+                    counted(count as u64, "Gaussian")
+                ));
+            }
+        }
+        if self.clamped > 0 {
+            say(format_args!(
+                "note: of {} scales, colours or coefficients are beyond what {} holds, and the nearest that it does now",
+                counted(self.clamped, "Gaussian"),
+                self.format
+            ));
+        }
+        if self.written == 0 && self.gaussians > 0 {
+            say(format_args!(
+                "warning: nothing is left of {}, and {} is a scene without Gaussians; rara info prints the scene's bounds",
+                counted(self.gaussians as u64, "Gaussian"),
+                self.file.display()
+            ));
+        }
+        say(format_args!(
+            "wrote {} of degree {} to {} ({}, {})",
+            counted(self.written as u64, "Gaussian"),
+            self.sh_degree,
+            self.file.display(),
+            self.format,
+            counted(self.bytes, "byte")
+        ));
+    }
+}
+
 impl Convert {
     pub(super) fn run(self) -> Result<(), Failure> {
         let format =
             scene::saved_format(&self.output).map_err(|error| Failure::Usage(error.to_string()))?;
-        output::check_file(&self.output)?;
-        for entry in self.scenes.entries()? {
-            if output::is_same(&entry.path, &self.output) {
-                return Err(Failure::Usage(format!(
-                    "{} is one of the scenes to convert, and would be replaced; name another file",
-                    self.output.display()
-                )));
-            }
-        }
+        let entries = self.scenes.entries()?;
+        let scenes = match is_several(&self.output) {
+            true => self.scenes.each()?,
+            false => vec![(String::new(), self.scenes.clone())],
+        };
+        let names: Vec<_> = scenes.iter().map(|(name, _)| name.as_str()).collect();
+        let sources = entries.iter().map(|entry| entry.path.as_path());
+        let files = scene_files(&self.output, &names, sources)?;
         let placement = self.placement()?;
         let clip = self.clip.meant()?;
-        let mut loaded = self.scenes.load()?;
+        let mut documents = Vec::new();
+        for (file, (_, scenes)) in files.into_iter().zip(&scenes) {
+            let document = self.convert(scenes, (file, format), (&clip, placement))?;
+            document.say();
+            documents.push(document);
+        }
+        match &documents[..] {
+            _ if !self.json => Ok(()),
+            [document] => Ok(output::json(document)?),
+            documents => Ok(output::json(&json!({ "files": documents }))?),
+        }
+    }
+
+    /// Writes a file of scenes.
+    fn convert(
+        &self,
+        scenes: &SceneArgs,
+        (file, format): (PathBuf, Format),
+        (clip, placement): (&Regions, Placement),
+    ) -> Result<ConvertJson, Failure> {
+        let mut loaded = scenes.load_whole()?;
         clip.settle(&mut loaded)?;
         let clip = clip.clip(&loaded.scene())?;
         trained::check_alike(&loaded)?;
         let mut document = ConvertJson {
-            file: self.output.clone(),
+            file,
             format: format.to_string(),
             notes: std::mem::take(&mut loaded.notes),
             ..ConvertJson::default()
         };
         let mut taken = Vec::new();
+        let up = up(&loaded, &placement);
         for layer in std::mem::take(&mut loaded.layers) {
             let count = layer.gaussians.len();
             document.gaussians += count;
@@ -127,24 +191,33 @@ impl Convert {
         let Part {
             gaussians: mut whole,
             numbers,
-        } = select::joined(taken);
+        } = joined(taken);
         let mut annotations = std::mem::take(&mut loaded.annotations);
         annotations.keep(&numbers);
+        let mut extra = std::mem::take(&mut loaded.extra);
+        extra.keep(&numbers);
         let lost = whole.place(&placement);
         document.lost += lost.len();
-        annotations.keep(&select::without(&lost, whole.len() + lost.len()));
+        let left = without(&lost, whole.len() + lost.len());
+        annotations.keep(&left);
+        extra.keep(&left);
         if let Some(degree) = self.sh_degree.filter(|&degree| degree < whole.sh_degree()) {
             whole.set_sh_degree(degree);
         }
         let lost_words = lost_words(format, &annotations);
+        let lost_extra = extra.lost(format);
         let options = SaveOptions::default()
             .spz_version(self.spz_version)
-            .annotations(Some(annotations));
-        document.clamped = scene::save_with(&self.output, &whole, &options)?;
+            .annotations(Some(annotations))
+            .properties(extra.properties)
+            .up(up);
+        document.clamped = scene::save_with(&document.file, &whole, &options)?;
         let notes = [
             trained::lost(format, whole.training()),
             lost_origin(format, &whole),
             lost_words,
+            lost_extra,
+            lost_up(format, up),
         ];
         for note in notes.into_iter().flatten() {
             say(format_args!("warning: {note}"));
@@ -152,8 +225,8 @@ impl Convert {
         }
         document.written = whole.len();
         document.sh_degree = whole.sh_degree();
-        document.bytes = std::fs::metadata(&self.output).map_or(0, |metadata| metadata.len());
-        self.print(&document)
+        document.bytes = std::fs::metadata(&document.file).map_or(0, |metadata| metadata.len());
+        Ok(document)
     }
 
     fn placement(&self) -> Result<Placement, Failure> {
@@ -174,7 +247,7 @@ impl Convert {
         layer: LoadedLayer,
         clip: &Clip,
         document: &mut ConvertJson,
-    ) -> Result<(Option<Numbers>, Part), Failure> {
+    ) -> Result<(Option<FileNumbers>, Part), Failure> {
         let LayerState {
             placement, opacity, ..
         } = layer.state;
@@ -199,59 +272,38 @@ impl Convert {
         }
         let mut part = gaussians.into_parts(&part_of, 2)?.swap_remove(0);
         if !lost.is_empty() {
-            let left = select::without(&lost, count);
+            let left = without(&lost, count);
             part.numbers
                 .iter_mut()
                 .for_each(|number| *number = left[*number as usize]);
         }
         Ok((layer.numbers, part))
     }
+}
 
-    fn print(&self, document: &ConvertJson) -> Result<(), Failure> {
-        if self.json {
-            return Ok(output::json(document)?);
-        }
-        for (count, why) in [
-            (document.hidden, "in hidden layers"),
-            (document.clipped, "outside the clip"),
-            (document.faint, "too faint"),
-            (
-                document.lost,
-                "beyond single precision where they are placed",
-            ),
-        ] {
-            if count > 0 {
-                say(format_args!(
-                    "left out {} {why}",
-                    counted(count as u64, "Gaussian")
-                ));
-            }
-        }
-        if document.clamped > 0 {
-            say(format_args!(
-                "note: of {} scales, colours or coefficients are beyond what {} holds, and the nearest that it does now",
-                counted(document.clamped, "Gaussian"),
-                document.format
-            ));
-        }
-        say(format_args!(
-            "wrote {} of degree {} to {} ({}, {})",
-            counted(document.written as u64, "Gaussian"),
-            document.sh_degree,
-            document.file.display(),
-            document.format,
-            counted(document.bytes, "byte")
-        ));
-        Ok(())
-    }
+/// The direction that is up in the file that is written, where that of its first layer says so.
+pub(super) fn up(loaded: &SceneLayers, placement: &Placement) -> Option<DVec3> {
+    let first = loaded.layers.iter().find(|layer| layer.state.visible)?;
+    let turn = placement.rotation() * first.state.placement.rotation();
+    Some(turn * first.up?)
+}
+
+/// The warning that a file of this format cannot say what is up.
+pub(super) fn lost_up(format: Format, up: Option<DVec3>) -> Option<String> {
+    let is_axis = |up: DVec3| up.abs().max_element() > 1.0 - 1e-6;
+    up.filter(|up| format != Format::Ply || !is_axis(*up))
+        .map(|up| {
+            let up = up::direction_text(up);
+            format!("left out that {up} is up; draw the file with --up {up}")
+        })
 }
 
 /// The warning that a file of this format cannot hold what the centres are counted from.
-fn lost_origin(format: scene::Format, gaussians: &rara::Gaussians) -> Option<String> {
+fn lost_origin(format: Format, gaussians: &rara::Gaussians) -> Option<String> {
     let [x, y, z] = gaussians.origin().to_array();
     match format {
         _ if [x, y, z] == [0.0; 3] => None,
-        scene::Format::Ply | scene::Format::Gltf => None,
+        Format::Ply | Format::Gltf => None,
         _ => Some(format!(
             "{format} holds centres near zero only, so they are written as counted from ({x}, {y}, {z}); draw the file with \
              --place move:{x},{y},{z}"
@@ -260,8 +312,8 @@ fn lost_origin(format: scene::Format, gaussians: &rara::Gaussians) -> Option<Str
 }
 
 /// The warning that a file of this format has no room for what others say around their Gaussians.
-fn lost_words(format: scene::Format, annotations: &Annotations) -> Option<String> {
-    (format != scene::Format::Gltf && !annotations.is_silent()).then(|| {
+fn lost_words(format: Format, annotations: &Annotations) -> Option<String> {
+    (format != Format::Gltf && !annotations.is_silent()).then(|| {
         format!("{format} has no room for the names and extras of the glTF; a .glb keeps them")
     })
 }

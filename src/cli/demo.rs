@@ -2,49 +2,53 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use rara::scene;
 use rara::{
     Camera, Clip, ClipOp, Decay, ExactForm, FrameStats, Mode, Picture, Plane, Scene, Settings,
 };
-use rara_lab::frames::{self, fresh, in_turn};
-use rara_lab::{maps, measure};
+use rara_reference::comparison::compare;
+use rara_reference::maps;
 
+use super::camera::CameraArgs;
 use super::combine::{Combine, combine};
 use super::compare::{Measures, over};
 use super::failure::Failure;
-use super::frame::ComparisonArgs;
-use super::framing;
 use super::memory;
 use super::output::{self, counted, grouped, say};
-use super::scene_layers::SceneLayers;
 use super::scenes;
 use super::session::Session;
-use super::values::name;
+use super::settings::{DeviceArgs, LookArgs};
+use super::values;
 use super::{sheet, times};
+use rara::scene::layers::SceneLayers;
 
-/// Draw a scene cut through its middle in all four modes, and measure them
+/// Cut a scene through its middle, draw it in all four modes, and measure their errors
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
   rara demo -o out
   rara demo scene.ply -o out --cameras cameras.json --view 3
 
-Writes none.png, hard.png, rara.png, exact.png and sheet.png, which also magnifies the piece in which hard and exact
-differ most. \"own\" compares the picture with the same mode computed
-in double precision on the CPU; \"truth\" with the exact cut.")]
+The command writes none.png, hard.png, rara.png, exact.png and sheet.png. The sheet shows all four pictures, and magnifies the
+part in which hard and exact differ most. In the table, \"own\" compares the picture with the same mode computed in double
+precision on the CPU, and \"truth\" compares it with the exact cut.")]
 pub(super) struct Demo {
-    /// Scene files, the layers of one scene [default: a made-up scene]
+    /// Scene files, the layers of one scene [default: a generated scene]
     #[arg(value_name = "SCENE")]
     scenes: Vec<PathBuf>,
-    /// Folder for the pictures; made unless it is there
-    #[arg(short, long, value_name = "DIR", default_value = "out")]
+    /// Folder for the pictures; created if it does not exist
+    #[arg(short, long, value_name = "DIR", value_parser = values::one_file(), default_value = "out")]
     output: PathBuf,
-    /// Leave out the double-precision reference, which takes a while for large scenes
+    /// Do not compute the reference in double precision, which takes long for large scenes
     #[arg(long)]
     no_reference: bool,
     #[command(flatten)]
-    common: ComparisonArgs,
+    camera: CameraArgs,
+    #[command(flatten)]
+    look: LookArgs,
+    #[command(flatten)]
+    device: DeviceArgs,
 }
 
 /// Frames of each mode, whose median is shown.
@@ -62,8 +66,8 @@ struct Shot {
 
 impl Demo {
     pub(super) fn run(self) -> Result<(), Failure> {
-        let look = self.common.look.meant()?;
-        let views = self.common.camera.meant(&self.scenes)?.single("a demo")?;
+        let look = self.look.meant();
+        let views = self.camera.meant(&self.scenes)?.single("a demo")?;
         output::make_folder(&self.output)?;
         let loaded = if self.scenes.is_empty() {
             made_up()
@@ -71,29 +75,33 @@ impl Demo {
             scenes::load_files(&self.scenes, &mut |_| ())?
         };
         let scene = loaded.scene();
-        let camera = framing::views(views, &scene)?.remove(0).camera;
+        let camera = views.in_scene(&scene)?.remove(0).camera;
         let clip = Clip::of([middle(&scene, &camera)?], ClipOp::And);
 
         memory::check_picture((camera.width, camera.height), 0)?;
-        let mut session = Session::open(&self.common.device.meant(), &scene, look.precision.sh)?;
+        let mut session = Session::open(&self.device.meant(), &scene, look.precision.sh)?;
         let (device, driver) = (session.headless.device_name(), session.headless.driver());
         let count = counted(scene.gaussians() as u64, "Gaussian");
         say(format_args!(
             "{device} ({driver}); {count}, {}x{}",
             camera.width, camera.height
         ));
-        let all = Mode::value_variants().iter().map(|&mode| look.mode(mode));
+        let all = Mode::ALL.iter().map(|&mode| look.mode(mode));
         let all: Vec<Settings> = all.collect();
         // One after the other: each is drawn once before any is measured.
         for settings in &all {
             session.warm_up([(&camera, &clip, settings)])?;
         }
-        let frames = in_turn(FRAMES..=FRAMES, all.len(), |way, _| {
-            fresh(&mut session.headless, &camera, &clip, &all[way])
-        })?;
+        // In turn, so that other work on the machine disturbs all of them alike.
+        let mut frames = vec![Vec::new(); all.len()];
+        for _ in 0..FRAMES {
+            for (settings, frames) in all.iter().zip(&mut frames) {
+                frames.push(session.fresh(&camera, &clip, settings)?);
+            }
+        }
         let mut shots = Vec::new();
         for (settings, frames) in all.into_iter().zip(&frames) {
-            let (picture, _) = frames::picture(&mut session.headless, &camera, &clip, &settings)?;
+            let picture = session.picture(&camera, &clip, &settings)?;
             shots.push(Shot {
                 mode: settings.mode,
                 settings,
@@ -105,10 +113,10 @@ impl Demo {
         let compiled = output::compiled(session.first_use_ms(usual), session.has_kept());
         session.headless.close()?;
         for Shot { mode, picture, .. } in &shots {
-            over(picture, PAPER).save(self.output.join(format!("{}.png", name(*mode))))?;
+            over(picture, PAPER).save(self.output.join(format!("{}.png", mode)))?;
         }
         let labelled = shots.iter();
-        let labelled = labelled.map(|shot| (name(shot.mode), over(&shot.picture, PAPER)));
+        let labelled = labelled.map(|shot| (shot.mode.to_string(), over(&shot.picture, PAPER)));
         let labelled: Vec<_> = labelled.collect();
         let [_, hard, _, exact] = [0, 1, 2, 3].map(|index| &shots[index].picture);
         let piece = hard.width.max(hard.height).div_ceil(sheet::ZOOM);
@@ -130,7 +138,7 @@ fn made_up() -> SceneLayers {
 }
 
 /// A plane that shows the camera the cut: it takes away what is near and to the left, which is half of the Gaussians.
-pub(super) fn middle(scene: &Scene<'_>, camera: &Camera) -> rara::Result<Plane> {
+pub fn middle(scene: &Scene<'_>, camera: &Camera) -> rara::Result<Plane> {
     let normal = camera.rotation.row(0) * 0.8 + camera.rotation.row(2) * 0.6;
     let layers = scene.layers().iter();
     let centres = layers.flat_map(|layer| layer.gaussians().positions());
@@ -155,7 +163,7 @@ fn print_frames(shots: &[Shot]) {
             [c.visible, c.cutoff, c.invisible, c.culled].map(|n| grouped(n.into()));
         say(format_args!(
             "{:<6} {visible:>10} {cut:>10} {clipped:>10} {culled:>10} {:>9}  {}",
-            name(*mode),
+            mode,
             times::ms(stats.gpu_ms, 2),
             times::stages(stats, 2).join(", ")
         ));
@@ -189,12 +197,12 @@ fn print_errors(
         ..
     } in shots
     {
-        let own = columns(&measure::compare(picture, &render(settings))?.into());
+        let own = columns(&compare(picture, &render(settings))?.into());
         let cut = match mode {
             Mode::None => String::new(), // Nothing is cut, so there is nothing to be exact about.
-            _ => columns(&measure::compare(picture, &truth)?.into()),
+            _ => columns(&compare(picture, &truth)?.into()),
         };
-        say(format_args!("{:<6} {own}   {cut}", name(*mode))
+        say(format_args!("{:<6} {own}   {cut}", mode)
             .to_string()
             .trim_end());
     }

@@ -8,14 +8,14 @@ use super::failure::Failure;
 use super::output;
 use rara::gpu::list_devices;
 
-/// List the Vulkan devices, and why one will not do
+/// List the Vulkan devices, and say why rara cannot use some of them
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Example:
+Examples:
   rara devices
   rara render scene.ply -o picture.png --device 1")]
 pub(super) struct Devices {
-    /// Print the list as JSON to stdout
+    /// Print the list as JSON to standard output
     #[arg(long)]
     json: bool,
 }

@@ -3,8 +3,10 @@
 use std::fmt;
 use std::process::ExitCode;
 
+use super::output::{counted, program};
+
 #[derive(Debug)]
-pub(super) enum Failure {
+pub enum Failure {
     /// The command line is wrong: exit status 2.
     Usage(String),
     /// Clap's help, asked for by typing nothing: exit status 2.
@@ -67,15 +69,16 @@ impl From<clap::Error> for Failure {
 impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
-            Self::Usage(message) => write!(f, "rara: {message}"),
+            Self::Usage(message) => write!(f, "{}: {message}", program()),
             Self::Help(help) => write!(f, "{help}"),
             Self::Work(rara::Error::Validation(messages)) => write!(
                 f,
-                "rara: the validation layer had something to say, {}, see above; this is a fault of rara or of \
+                "{}: the validation layer had something to say, {}, see above; this is a fault of rara or of \
                  the driver: please report it",
-                super::output::counted(messages.len() as u64, "time")
+                program(),
+                counted(messages.len() as u64, "time")
             ),
-            Self::Work(error) => write!(f, "rara: {}", chain(error)),
+            Self::Work(error) => write!(f, "{}: {}", program(), chain(error)),
         }
     }
 }
@@ -111,37 +114,4 @@ fn chain(error: &dyn std::error::Error) -> String {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn clap_messages_become_one_line() {
-        let message = "error: unexpected argument '--mod' found\n\n  tip: a similar argument exists: '--mode'\n\nUsage: rara render --mode <MODE>\n\nFor more information, try '--help'.\n";
-        assert_eq!(
-            one_line(message),
-            "unexpected argument '--mod' found; tip: a similar argument exists: '--mode'"
-        );
-    }
-
-    #[test]
-    fn each_validation_message_is_a_line_of_its_own() {
-        let messages = vec!["in pass sort: buffer splats:\n a hazard".into(), "b".into()];
-        let failure = Failure::from(rara::Error::Validation(messages));
-        let lines: Vec<_> = failure.details().collect();
-        assert_eq!(
-            lines,
-            [
-                "validation: in pass sort: buffer splats: a hazard",
-                "validation: b"
-            ]
-        );
-        assert!(failure.to_string().contains("2 times"));
-        assert_eq!(Failure::Usage("no".into()).details().count(), 0);
-    }
-
-    #[test]
-    fn a_quoted_cause_is_not_repeated() {
-        let error = rara::Error::io("scene.ply")(std::io::Error::other("the disk is gone"));
-        assert_eq!(chain(&error), "scene.ply: the disk is gone");
-    }
-}
+mod tests;

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use clap::builder::TypedValueParser;
 
 use super::failure::Failure;
 use super::memory;
@@ -10,7 +11,7 @@ use super::output::{self, counted, say};
 use super::values;
 use rara::scene;
 
-/// Write a made-up scene
+/// Generate a synthetic scene
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
@@ -18,16 +19,17 @@ Examples:
   rara generate strands -n 3000000 --seed 7 -o hair.ply")]
 pub(super) struct Generate {
     /// The kind of scene
+    #[arg(value_parser = values::named::<scene::Kind>())]
     kind: scene::Kind,
     /// Number of Gaussians
     #[arg(short = 'n', long, value_name = "COUNT", default_value_t = 100_000)]
     #[arg(value_parser = clap::value_parser!(u32).range(1..))]
     count: u32,
-    /// The same seed makes the same scene
+    /// Seed of the random numbers; the same seed makes the same scene
     #[arg(long, value_name = "S", default_value_t = 1)]
     seed: u64,
-    /// The scene's file
-    #[arg(short, long, value_name = "OUT.ply", value_parser = values::ply_path)]
+    /// File for the scene
+    #[arg(short, long, value_name = "OUT.ply", value_parser = values::one_file().try_map(values::ply_path))]
     output: PathBuf,
 }
 

@@ -4,32 +4,33 @@
 //! both come from the flags' definitions alone.
 
 use clap::builder::StyledStr;
-use clap::{Arg, ArgAction, Args, Command, CommandFactory};
+use clap::{Arg, ArgAction, Args, Command};
 
 use super::failure::Failure;
-use super::{Cli, output};
+use super::output;
 
 /// Print the flags of a command, or everything about a topic
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
-  rara help
-  rara help render
-  rara help clip")]
+  PROGRAM help
+  PROGRAM help clip")]
 pub(super) struct Help {
     /// A command or a topic
     #[arg(value_name = "COMMAND|TOPIC")]
     of: Option<String>,
 }
 
-pub(super) fn command() -> Command {
+/// Returns the definitions of a program's flags as people see them, given those that were written.
+pub(super) fn command(definitions: Command) -> Command {
+    let program = definitions.get_name().to_owned();
     let help = Arg::new("help")
         .short('h')
         .long("help")
         .help("Print help")
         .action(ArgAction::HelpShort)
         .display_order(1000);
-    let command = Cli::command()
+    let command = definitions
         .disable_help_flag(true)
         .mut_subcommands(|part| {
             // What a command writes comes first, and the rest as it is defined.
@@ -43,11 +44,13 @@ pub(super) fn command() -> Command {
             if topics.is_empty() {
                 return part;
             }
-            let names = topics.iter().map(|heading| topic(heading));
+            let names: Vec<_> = topics.iter().map(|heading| topic(heading)).collect();
             let more = format!(
-                "More on each flag: rara help {}, and rara help TOPIC for the topics {}.",
+                "{0} help {1} explains the flags of the command, and {0} help TOPIC explains those of the {2} {3}.",
+                program,
                 part.get_name(),
-                names.collect::<Vec<_>>().join(", ")
+                if names.len() == 1 { "topic" } else { "topics" },
+                names.join(", ")
             );
             let after = part.get_after_help().map(StyledStr::to_string);
             let after = after.map_or(String::new(), |after| format!("{after}\n\n"));
@@ -55,8 +58,8 @@ pub(super) fn command() -> Command {
         })
         .mut_subcommands(|part| match part.get_after_help() {
             Some(after) => {
-                let after = unwrapped(&after.to_string());
-                part.after_help(after)
+                let after = after.to_string().replace("PROGRAM", &program);
+                part.after_help(unwrapped(&after))
             }
             None => part,
         });
@@ -96,8 +99,8 @@ fn topic(heading: &str) -> String {
 }
 
 impl Help {
-    pub(super) fn run(self) -> Result<(), Failure> {
-        let mut command = command();
+    /// Prints the help of a program's commands; `beside` is the sentence of which program has others.
+    pub(super) fn run(self, mut command: Command, beside: &str) -> Result<(), Failure> {
         command.build();
         let Some(of) = self.of else {
             return Ok(output::answer(&command.render_help().to_string())?);
@@ -115,7 +118,8 @@ impl Help {
             let flags: Vec<Arg> = part.get_arguments().filter(of_topic).cloned().collect();
             if !flags.is_empty() {
                 let whose = format!(
-                    "These are flags of rara {}, and of other commands that list them.",
+                    "These are flags of {} {}, and of other commands that list them.",
+                    command.get_name(),
                     part.get_name()
                 );
                 let flags = page(flags).render_long_help();
@@ -130,7 +134,7 @@ impl Help {
         }
         let meant = super::values::meant(&of, known.iter().map(String::as_str));
         Err(Failure::Usage(format!(
-            "help {of}: there is no such command or topic; there are {}{meant}",
+            "help {of}: there is no such command or topic; there are {}{meant}; {beside}",
             known.join(", ")
         )))
     }
@@ -162,91 +166,4 @@ fn of_command(command: &Command) -> String {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use std::collections::HashMap;
-
-    fn parts() -> Vec<Command> {
-        let mut command = command();
-        command.build();
-        command.get_subcommands().cloned().collect()
-    }
-
-    fn help(part: &Command) -> String {
-        part.clone().render_help().to_string()
-    }
-
-    #[test]
-    fn the_help_of_a_command_is_short_and_begins_with_its_output() {
-        for part in parts() {
-            let (name, text) = (part.get_name(), help(&part));
-            let lines = text.lines().count();
-            assert!(lines <= 150, "{name}: {lines} lines");
-            let options = text.split_once("Options:\n").map(|(_, rest)| rest);
-            let first = options.and_then(|rest| rest.lines().next()).unwrap_or("");
-            let writes = part.get_arguments().any(|arg| arg.get_id() == "output");
-            assert!(!writes || first.contains("--output"), "{name}: {first}");
-        }
-    }
-
-    #[test]
-    fn texts_are_for_readers_of_a_terminal() {
-        let mut long: Vec<String> = Vec::new();
-        for part in parts() {
-            for arg in part.get_arguments() {
-                let name = format!("{} {}", part.get_name(), arg.get_id());
-                let summary = arg.get_help().map(ToString::to_string).unwrap_or_default();
-                if summary.len() > 90 || summary.is_empty() || summary.ends_with('.') {
-                    long.push(format!("{name}: {summary}"));
-                }
-                let values = arg.get_possible_values().into_iter();
-                let values = values.filter_map(|value| value.get_help().map(ToString::to_string));
-                let details = arg.get_long_help().map(ToString::to_string);
-                for text in values.chain(details).chain([summary]) {
-                    let is_for_rustdoc = text.contains("](") || text.contains("[`");
-                    assert!(!is_for_rustdoc, "{name}: {text}");
-                }
-            }
-        }
-        assert!(long.is_empty(), "no summaries: {long:#?}");
-    }
-
-    #[test]
-    fn paragraphs_are_wrapped_once() {
-        for part in parts() {
-            let text = help(&part);
-            let lines: Vec<&str> = text.lines().collect();
-            for pair in lines.windows(2) {
-                let is_prose =
-                    |line: &str| line.starts_with(char::is_alphanumeric) && !line.ends_with(':');
-                if !is_prose(pair[0]) || !is_prose(pair[1]) {
-                    continue;
-                }
-                let word = pair[1].split(' ').next().unwrap_or_default();
-                let would_fit = pair[0].len() + 1 + word.len() <= 100;
-                assert!(!would_fit, "{}: {pair:?}", part.get_name());
-            }
-        }
-    }
-
-    #[test]
-    fn a_topic_is_one_heading() {
-        let mut headings: HashMap<String, String> = HashMap::new();
-        for heading in parts().iter().flat_map(topics) {
-            let known = headings.entry(topic(&heading)).or_insert(heading.clone());
-            assert_eq!(*known, heading);
-        }
-        let commands: Vec<String> = parts().iter().map(|part| part.get_name().into()).collect();
-        assert!(headings.keys().all(|topic| !commands.contains(topic)));
-        assert!(headings.len() >= 8, "{headings:?}");
-    }
-
-    #[test]
-    fn paragraphs_are_joined_and_lists_are_not() {
-        let text = "Examples:\n  a\n  b\n\nOne\ntwo.\n\nThree:\n  c";
-        assert_eq!(
-            unwrapped(text),
-            "Examples:\n  a\n  b\n\nOne two.\n\nThree:\n  c"
-        );
-    }
-}
+mod tests;

@@ -7,10 +7,10 @@ use serde::Serialize;
 
 use super::failure::Failure;
 use super::output::{self, grouped};
-use super::scene_layers::LoadedLayer;
 use super::scenes::SceneArgs;
-use super::values;
+use super::up;
 use rara::scene::Bounds;
+use rara::scene::layers::LoadedLayer;
 use rara_reference::classify::{Bands, bands};
 
 /// Show what is in a scene
@@ -19,10 +19,10 @@ use rara_reference::classify::{Bands, bands};
 Example:
   rara info scene.ply
 
-Statistics are the least value, the 1st, 50th and 99th percentiles, and the greatest. What the loader repaired or
-dropped comes first.")]
+The command first prints what the loader repaired or dropped. Statistics are the smallest value, the 1st, 50th and 99th
+percentiles, and the largest value.")]
 pub(super) struct Info {
-    /// Print it as JSON to stdout
+    /// Print the same facts as JSON to standard output
     #[arg(long)]
     json: bool,
     #[command(flatten)]
@@ -93,6 +93,8 @@ struct LayerFacts {
     linear: bool,
     /// What its centres are counted from, its own units; zero unless it is far from there.
     origin: [f64; 3],
+    /// The direction that is up, where its file says so.
+    up: Option<[f64; 3]>,
     clipped: bool,
     /// What else there is to say of it, where it is one of several.
     #[serde(rename = "statistics", skip_serializing_if = "Option::is_none")]
@@ -112,9 +114,10 @@ impl LayerFacts {
             antialiased: layer.gaussians.is_antialiased(),
             low_pass: layer.gaussians.low_pass(),
             origin: layer.gaussians.origin().into(),
-            sort_by: values::name(layer.gaussians.training().sort_by),
+            sort_by: layer.gaussians.training().sort_by.to_string(),
             alpha_max: layer.gaussians.training().alpha_max,
             linear: layer.gaussians.training().linear,
+            up: layer.up.map(Into::into),
             clipped: layer.clip.is_some(),
             facts: None,
         }
@@ -278,6 +281,9 @@ fn table(document: &InfoJson) -> Vec<String> {
             "colours        {colours}, alpha up to {}",
             layer.alpha_max
         ));
+        if let Some(up) = layer.up {
+            lines.push(format!("up             {}", up::direction_text(up.into())));
+        }
         if layer.origin != [0.0; 3] {
             let [x, y, z] = layer.origin;
             lines.push(format!("origin         ({x}, {y}, {z})"));

@@ -6,10 +6,9 @@ use rara::{HeadlessDesc, Result, Scene, ShFormat};
 
 use super::failure::Failure;
 use super::profile::Profile;
-use super::scene_file::LayerClip;
-use super::scene_layers::SceneLayers;
 use super::scenes::SceneArgs;
 use super::session::Session;
+use rara::scene::layers::{LayerClip, SceneLayers};
 
 /// What the last command has left; nothing where a command runs by itself.
 #[derive(Default)]

@@ -3,9 +3,8 @@
 use rara::Bounds;
 
 use super::failure::Failure;
-use super::region::Region;
-use super::scene_file::LayerClip;
-use super::scene_layers::SceneLayers;
+use super::layer_names::named;
+use rara::scene::layers::{LayerClip, Region, SceneLayers};
 
 /// Does what the flags say, in their order.
 pub(super) fn apply(texts: &[String], loaded: &mut SceneLayers) -> Result<(), Failure> {
@@ -25,7 +24,7 @@ pub(super) fn apply(texts: &[String], loaded: &mut SceneLayers) -> Result<(), Fa
                 Some(clip.map_err(wrong)?)
             }
         };
-        for layer in loaded.named("--layer-clip", name)? {
+        for layer in named(loaded, "--layer-clip", name)? {
             layer.clip = clip.clone();
         }
     }

@@ -26,7 +26,7 @@ pub(super) fn check_gaussians(count: u64) -> Result<()> {
 
 /// Fails where so many Gaussians do not fit beside a renderer that draws them on this machine's processor: it holds them too,
 /// and their splats and pairs of a splat and a tile.
-pub(super) fn check_drawing(count: u64) -> Result<()> {
+pub fn check_drawing(count: u64) -> Result<()> {
     check(
         4 * count * GAUSSIAN + DRIVER,
         || format!("{} and a renderer", counted(count, "Gaussian")),

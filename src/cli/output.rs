@@ -5,18 +5,32 @@ use std::fs;
 use std::io::{self, ErrorKind, Write};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::{Mutex, PoisonError, RwLock, RwLockReadGuard};
+use std::sync::{Mutex, OnceLock, PoisonError, RwLock, RwLockReadGuard};
 
 use rara::{Error, OnCompile, Picture, PngCompression, Result};
 use serde::Serialize;
 
-use super::values::STANDARD;
-
 use super::progress;
 pub(super) use super::progress::{ProgressLine, Spinner, be_quiet, is_quiet};
+pub(super) use rara_base::counted::grouped;
+
+/// The name of standard input and standard output in place of a file.
+pub(super) const STANDARD: &str = "-";
+
+static PROGRAM: OnceLock<&str> = OnceLock::new();
+
+/// Says which program this is, before anything else is said.
+pub(super) fn begin(program: &'static str) {
+    let _ = PROGRAM.set(program);
+}
+
+/// The program's name.
+pub(super) fn program() -> &'static str {
+    PROGRAM.get().copied().unwrap_or("rara")
+}
 
 /// Prints a line for people, unless they want none.
-pub(super) fn say(line: impl Display) {
+pub fn say(line: impl Display) {
     if !is_quiet() {
         complain(line);
     }
@@ -124,7 +138,7 @@ pub(super) fn compiled(first_use_ms: f64, kept: bool) -> Option<String> {
 }
 
 /// Prints the document that `--json` promises.
-pub(super) fn json(document: &impl Serialize) -> Result<()> {
+pub fn json(document: &impl Serialize) -> Result<()> {
     answer(&serde_json::to_string_pretty(document).expect("the documents have string keys only"))
 }
 
@@ -135,7 +149,7 @@ pub(super) fn json_line(document: &impl Serialize) -> Result<bool> {
 }
 
 /// Prints what a command was asked for, with a line break behind.
-pub(super) fn answer(text: &str) -> Result<()> {
+pub fn answer(text: &str) -> Result<()> {
     bytes(format!("{}\n", text.trim_end()).as_bytes()).map(drop)
 }
 
@@ -216,12 +230,12 @@ pub(super) fn is_same(a: &Path, b: &Path) -> bool {
 }
 
 /// Writes a text file beside `file` and renames it into place, so that nobody sees half of one.
-pub(super) fn text(file: &Path, text: &str) -> Result<()> {
+pub fn text(file: &Path, text: &str) -> Result<()> {
     rara_base::files::write_atomically(file, |out| out.write_all(text.as_bytes()))
 }
 
 /// Makes `folder` and those it is in unless they are there, and fails where files could not be written into it.
-pub(super) fn make_folder(folder: &Path) -> Result<()> {
+pub fn make_folder(folder: &Path) -> Result<()> {
     // A file among the folders is the most likely mistake, and systems say different things of it.
     if let Some(file) = folder.ancestors().find(|part| part.is_file()) {
         return Err(Error::format(file, "this is not a folder"));
@@ -250,7 +264,7 @@ fn check_folder(folder: &Path) -> Result<()> {
 }
 
 /// So many of what is called `one`: "1 picture", "1 234 pictures".
-pub(super) fn counted(number: u64, one: &str) -> String {
+pub fn counted(number: u64, one: &str) -> String {
     rara_base::counted::counted(grouped(number), one)
 }
 
@@ -266,56 +280,5 @@ pub(super) fn ends_in(file: &Path, ending: &str) -> bool {
         .is_some_and(|it| it.eq_ignore_ascii_case(ending))
 }
 
-/// 1234567 as "1 234 567".
-pub(super) fn grouped(number: u64) -> String {
-    let digits = number.to_string();
-    let mut text = String::new();
-    for (index, digit) in digits.chars().enumerate() {
-        if index > 0 && (digits.len() - index).is_multiple_of(3) {
-            text.push(' ');
-        }
-        text.push(digit);
-    }
-    text
-}
-
 #[cfg(test)]
-mod tests {
-    use super::{check_folder, counted, grouped};
-    use std::fs;
-
-    #[test]
-    fn a_probe_leaves_nothing_and_touches_no_other() {
-        let folder = std::env::temp_dir().join(format!("rara-probes-{}", std::process::id()));
-        fs::create_dir_all(&folder).expect("a folder");
-        let probe =
-            |number: u64| folder.join(format!(".rara-{}-{number}.probe", std::process::id()));
-        // Other tests of this process may take some of these numbers meanwhile.
-        let theirs: Vec<_> = (0..64).map(probe).collect();
-        theirs
-            .iter()
-            .for_each(|file| fs::write(file, "theirs").expect("a file"));
-        std::thread::scope(|scope| {
-            let threads =
-                [(); 4].map(|()| scope.spawn(|| (0..50).all(|_| check_folder(&folder).is_ok())));
-            assert!(
-                threads
-                    .into_iter()
-                    .all(|thread| thread.join().expect("no panic"))
-            );
-        });
-        for file in &theirs {
-            assert_eq!(fs::read(file).expect("it is there"), b"theirs");
-            fs::remove_file(file).expect("ours");
-        }
-        fs::remove_dir(&folder).expect("nothing is left in it");
-    }
-
-    #[test]
-    fn digits_stand_in_groups_of_three() {
-        let shown = [0, 999, 1000, 1_234_567].map(grouped);
-        assert_eq!(shown, ["0", "999", "1 000", "1 234 567"]);
-        let shown = [1, 1000].map(|number| counted(number, "view"));
-        assert_eq!(shown, ["1 view", "1 000 views"]);
-    }
-}
+mod tests;

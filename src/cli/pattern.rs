@@ -1,7 +1,11 @@
-//! A picture's name that stands for several: `{}` is a number, `{:04}` one with zeros before it, `{name}` a name.
+//! A file's name that stands for several: `{}` is a number, `{:04}` one with zeros before it, `{name}` a name. Of files for scenes
+//! `{}` is a name too.
 
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
+
+use super::failure::Failure;
+use super::output;
 
 /// What takes the place of braces.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -13,19 +17,66 @@ enum Slot {
 
 /// The name of one picture. A pattern that is no text keeps its bytes where the system's names are bytes.
 pub(super) fn filled(pattern: &Path, number: usize, name: &str) -> PathBuf {
+    filled_with(pattern, number, &bare(name), &number.to_string())
+}
+
+/// The name of one picture, with what takes the place of `{}`.
+fn filled_with(pattern: &Path, number: usize, name: &str, plain: &str) -> PathBuf {
     let mut made = Vec::new();
     let mut rest = pattern.as_os_str().as_encoded_bytes();
     while let Some((at, length, slot)) = first_slot(rest) {
         made.extend_from_slice(&rest[..at]);
         let text = match slot {
+            Slot::Number(0) => plain.into(),
             Slot::Number(digits) => format!("{number:0digits$}"),
-            Slot::Name => bare(name),
+            Slot::Name => name.into(),
         };
         made.extend_from_slice(text.as_bytes());
         rest = &rest[at + length..];
     }
     made.extend_from_slice(rest);
     os_string(made, pattern.as_os_str()).into()
+}
+
+/// True where a name stands for several.
+pub(super) fn is_several(pattern: &Path) -> bool {
+    first_slot(pattern.as_os_str().as_encoded_bytes()).is_some()
+}
+
+/// The files that a name means for scenes or layers of these names, one for each, or one for all. Each can be written, and is
+/// none of `sources`: those would be gone.
+pub(super) fn scene_files<'a>(
+    pattern: &Path,
+    names: &[&str],
+    sources: impl Iterator<Item = &'a Path> + Clone,
+) -> Result<Vec<PathBuf>, Failure> {
+    let files: Vec<_> = match is_several(pattern) {
+        false => vec![pattern.to_owned()],
+        true => {
+            let names = names.iter().map(|name| name.replace(['/', '\\'], "_"));
+            let named = names.enumerate();
+            named
+                .map(|(number, name)| filled_with(pattern, number, &name, &name))
+                .collect()
+        }
+    };
+    for (number, file) in files.iter().enumerate() {
+        if files[..number].contains(file) {
+            return Err(Failure::Usage(format!(
+                "two of the scenes would be written to {}; rename one, as NAME=FILE, or leave the braces out to write all as one",
+                file.display()
+            )));
+        }
+        if let Some(source) = sources.clone().find(|one| output::is_same(one, file)) {
+            return Err(Failure::Usage(format!(
+                "{} is one of the scenes, and writing it would replace {}; name another file",
+                file.display(),
+                source.display()
+            )));
+        }
+        output::check_file(file)?;
+    }
+    Ok(files)
 }
 
 /// The first braces that stand for something: where they are, how long they are, and for what they stand.

@@ -53,7 +53,7 @@ fn drivers_folders(variable: impl Fn(&str) -> Option<OsString>) -> Vec<(&'static
 
 /// Makes the folder in which drivers keep what they compile, which NVIDIA's does not do by itself: before a device is opened,
 /// and not by commands that need none.
-pub(super) fn make_drivers_folder() {
+pub fn make_drivers_folder() {
     let Some(own) = std::env::var_os("RARA_CACHE").filter(|own| !own.is_empty()) else {
         return;
     };
@@ -77,8 +77,8 @@ mod signals {
     use super::super::{film, output};
 
     /// What is said when something aborts: Rust where a small piece of memory is not to be had, and drivers.
-    const ABORTED: &[u8] = b"rara: the process was aborted, as happens when memory runs out or a driver gives up; draw a \
-        smaller picture or fewer Gaussians, or let it have more memory (see ulimit -v)\n";
+    const ABORTED: &str = "the process was aborted, as happens when memory runs out or a driver gives up; draw a smaller \
+        picture or fewer Gaussians, or let it have more memory (see ulimit -v)";
 
     /// Removes unfinished files when the process is told to end, and then ends it as the signal would have. A second signal
     /// ends it at once. What whoever started the process has it ignore, it ignores.
@@ -110,7 +110,7 @@ mod signals {
                     0 => "no unfinished file was there",
                     _ => "the unfinished file is removed",
                 };
-                output::complain(format_args!("rara: interrupted; {what}"));
+                output::complain(format_args!("{}: interrupted; {what}", output::program()));
                 let _ = low_level::emulate_default_handler(signal);
             }
         };
@@ -134,8 +134,9 @@ mod signals {
             return;
         };
         let stderr = File::from(stderr);
+        let message = format!("{}: {ABORTED}\n", output::program());
         let explain = move || {
-            let _ = (&stderr).write_all(ABORTED);
+            let _ = (&stderr).write_all(message.as_bytes());
             low_level::exit(1);
         };
         // SAFETY: what runs in the signal's handler are the system calls write and _exit, which may.
@@ -144,41 +145,4 @@ mod signals {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn drivers_keep_theirs_beside_ours_and_nowhere_else() {
-        let own = std::env::temp_dir().join(format!("rara-process-{}", std::process::id()));
-        let with = |set: &[(&str, &str)]| {
-            let names = drivers_folders(|name| {
-                let other = set.iter().find(|(have, _)| *have == name);
-                other.map(|(_, value)| {
-                    OsString::from(value.replace('@', own.to_str().expect("text")))
-                })
-            });
-            names
-                .into_iter()
-                .map(|(name, folder)| {
-                    assert_eq!(Path::new(&folder), own.join("driver"));
-                    name
-                })
-                .collect::<Vec<_>>()
-        };
-        let both = ["MESA_SHADER_CACHE_DIR", "__GL_SHADER_DISK_CACHE_PATH"];
-        assert_eq!(with(&[("RARA_CACHE", "@")]), both);
-        assert_eq!(
-            with(&[("RARA_CACHE", "@"), ("MESA_SHADER_CACHE_DIR", "/x")]),
-            both[1..]
-        );
-        assert_eq!(
-            with(&[("RARA_CACHE", "@"), ("MESA_GLSL_CACHE_DIR", "/x")]),
-            both[1..]
-        );
-        assert!(with(&[]).is_empty() && with(&[("RARA_CACHE", "")]).is_empty());
-        assert!(!own.exists(), "nothing is made before a device is opened");
-        std::fs::write(&own, "a file").expect("a file");
-        assert!(with(&[("RARA_CACHE", "@")]).is_empty());
-        std::fs::remove_file(&own).expect("ours");
-    }
-}
+mod tests;

@@ -8,6 +8,7 @@ use rara::{HeadlessDesc, Scene, ShFormat, Trace};
 use super::failure::Failure;
 use super::output;
 use super::session::Session;
+use super::values;
 
 /// Recordings to make beside the pictures.
 #[derive(Debug, Args)]
@@ -16,11 +17,11 @@ pub(super) struct ProfileArgs {
     /// Write a trace for ui.perfetto.dev or chrome://tracing
     ///
     /// It shows how long each step takes on the processor and on the device.
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = values::one_file())]
     trace: Option<PathBuf>,
-    /// Count what each stage does, if the device can
+    /// Count the work of each stage with Vulkan's pipeline statistics, if the device has them
     ///
-    /// The counts are "statistics" in the JSON, and a line for each stage otherwise.
+    /// The JSON has the counts under "statistics". Without --json, rara prints a line for each stage.
     #[arg(long)]
     statistics: bool,
 }

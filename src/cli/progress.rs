@@ -84,13 +84,13 @@ fn hidden(template: &str, what: String) -> ProgressBar {
 }
 
 /// A bar on the terminal for work that takes longer than a moment; none elsewhere.
-pub(super) struct ProgressLine {
+pub struct ProgressLine {
     bar: ProgressBar,
     _sign: Sign,
 }
 
 impl ProgressLine {
-    pub(super) fn new(what: impl Into<String>) -> Self {
+    pub fn new(what: impl Into<String>) -> Self {
         let bar = hidden("{spinner} {msg} {wide_bar} {percent:>3} %", what.into());
         // Without a length the bar would be full.
         bar.set_length(1);
@@ -101,11 +101,11 @@ impl ProgressLine {
     }
 
     /// Says what is being done now.
-    pub(super) fn describe(&mut self, what: &str) {
+    pub fn describe(&mut self, what: &str) {
         self.bar.set_message(what.to_owned());
     }
 
-    pub(super) fn update(&mut self, done: u64, total: u64) {
+    pub fn update(&mut self, done: u64, total: u64) {
         self.bar.set_length(total);
         self.bar.set_position(done);
     }

@@ -3,10 +3,9 @@
 use std::io::{self, Read};
 use std::path::Path;
 
-use super::output::{ProgressLine, Spinner};
-use super::scene_file::LayerEntry;
-use super::{select, values};
-use rara::scene::{self, Property};
+use super::output::{ProgressLine, STANDARD, Spinner};
+use rara::scene::layers::LayerEntry;
+use rara::scene::{self, LoadOptions, Property};
 
 /// How far the reading of a scene's files has come.
 #[derive(Debug, Clone, Copy)]
@@ -24,7 +23,7 @@ pub(super) type Watch<'a> = &'a mut dyn FnMut(Reading<'_>);
 
 /// Reads the file of an entry, of this number among so many.
 pub(super) fn read(
-    entry: &LayerEntry,
+    (entry, options): (&LayerEntry, LoadOptions<'_>),
     file: (usize, usize),
     watch: Watch<'_>,
 ) -> rara::Result<(scene::SceneFile, Vec<Property>)> {
@@ -34,13 +33,16 @@ pub(super) fn read(
         watch(Reading { path, file, bytes });
     };
     tell(0, 0);
-    let properties = select::properties(&entry.selected);
-    if path != Path::new(values::STANDARD) {
+    if path != Path::new(STANDARD) {
         let mut progress = ProgressLine::new(format!("reading {}", path.display()));
-        return scene::load_with(path, &properties, &mut |done, total| {
+        let mut tell = |done, total| {
             progress.update(done, total);
             tell(done, total);
-        });
+        };
+        return match entry.part {
+            Some(number) => scene::load_layer(path, number, options, &mut tell),
+            None => scene::load_with(path, options, &mut tell),
+        };
     }
     let name = Path::new("standard input");
     let mut bytes = Vec::new();
@@ -52,13 +54,8 @@ pub(super) fn read(
             .map_err(rara::Error::io(name))?;
     }
     let mut progress = ProgressLine::new("reading standard input");
-    scene::load_from_with(
-        io::Cursor::new(bytes),
-        name,
-        &properties,
-        &mut |done, total| {
-            progress.update(done, total);
-            tell(done, total);
-        },
-    )
+    scene::load_from_with(io::Cursor::new(bytes), name, options, &mut |done, total| {
+        progress.update(done, total);
+        tell(done, total);
+    })
 }

@@ -4,29 +4,30 @@ use std::path::PathBuf;
 
 use clap::Args;
 use glam::DVec3;
-use rara::{Aov, Camera, Clip, Scene, Settings, Show};
+use rara::{Aov, Camera, Clip, Picture, Scene, Settings, Show};
+use rara_shots::{Panorama, levelled};
 
 use super::clip::Regions;
 use super::failure::Failure;
 use super::film;
 use super::frame::FrameArgs;
-use super::framing;
 use super::kept::SessionCache;
 use super::memory;
+use super::near;
 use super::output::{self, counted};
-use super::panorama::{self, Panorama, PanoramaArgs};
+use super::panorama::PanoramaArgs;
 use super::path::PathArgs;
 use super::pictures::{
     self, Destination, Order, PictureArgs, PictureJob, Pixels, Plan, RenderedPicture,
 };
 use super::profile::{Profile, ProfileArgs};
-use super::report::{Answer, FrameRecord, RenderReport, SceneReport};
+use super::report::{self, Answer, FrameRecord, RenderReport, SceneReport};
 use super::save_camera::SaveCameraArgs;
 use super::scenes::SceneArgs;
 use super::section::{Section, SectionArgs, Sections};
 use super::session::{Repeat, Session};
 use super::slice::{Cut, SliceArgs, Slicer};
-use super::values::name;
+use super::values;
 use super::views::{NamedView, Views};
 
 /// Draw one picture, one for each camera of a file, or a film
@@ -51,24 +52,26 @@ Examples:
 
 Pictures: .png is 8-bit RGBA, un-premultiplied; .exr is 32-bit float RGBA, premultiplied.")]
 pub(super) struct Render {
-    /// Picture, .png or .exr; a film, .apng, .mp4, .mov, .mkv or .webm; - is stdout
+    /// A picture (.png, .exr, .npy) or film (.apng, .mp4, .mov, .mkv, .webm); - is stdout
     ///
-    /// Folders are made. {} becomes the number of the camera or section, {:04} the number with zeros before it, and
-    /// {name} its name. A folder gets several pictures as frame_000.png and so on. A film holds all pictures;
-    /// ffmpeg encodes all but .apng. --format says what standard output gets. The flag may be left out with --json
-    /// and --json-lines.
+    /// Folders that do not exist are created. {} becomes the number of the camera or section, {:04} the number with leading
+    /// zeros, and {name} the name. If OUT is a folder, several pictures are written into it as frame_000.png and so on. A
+    /// film contains all pictures; .apng needs no other program, and the other films need ffmpeg. --format chooses what is
+    /// written to standard output. With --json or --json-lines, --output is optional.
     #[arg(short, long, value_name = "OUT", value_parser = film::pictures_file())]
     #[arg(required_unless_present_any = ["json", "json_lines"])]
     output: Option<PathBuf>,
-    /// Channels beside the colours: in an .exr, or in files beside a .png (16 bits) or .npy
+    /// Extra channels, added to an .exr, or in separate files beside a .png (16 bits) or .npy
     ///
-    /// Beside a.png and a.npy they are a.depth.png, a.normal.png and so on. In 16 bits depths are thousandths of a world unit,
-    /// normals from -1 to 1, weights from 0 to 1, counts as they are, and layers count from 1. Each is drawn in frames of its own, and no time of it is reported.
-    #[arg(long, value_name = "LIST", value_delimiter = ',')]
+    /// Beside a.png the files are a.depth.png, a.normal.png and so on. A 16-bit .png stores depths in thousandths of a world
+    /// unit, normals from -1 to 1, weights from 0 to 1, counts as whole numbers, and layers as numbers from 1. The channels
+    /// are drawn in frames of their own, whose times are not reported.
+    #[arg(long, value_name = "LIST", value_parser = values::named::<Aov>(), value_delimiter = ',')]
     aov: Vec<Aov>,
-    /// Render N times from nothing, and report the medians
+    /// Render each picture N times, without reusing results, and report medians
     ///
-    /// By default as often as five frames need, but no longer than about 2 s.
+    /// By default, rara renders pictures repeatedly until there are at least five frames in all, or until about 2 s have
+    /// passed. With --quiet, it renders each picture once.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     repeat: Option<u32>,
     #[command(flatten)]
@@ -132,7 +135,7 @@ impl Pictures {
         Ok(match self {
             Self::Views(views, regions) => {
                 let clip = regions.clip(scene)?;
-                let views = framing::views(views, scene)?.into_iter();
+                let views = views.in_scene(scene)?.into_iter();
                 let shot = |view| Shot {
                     view,
                     clip: clip.clone(),
@@ -225,7 +228,7 @@ impl Render {
         if let Some((_, first)) = moments.first() {
             self.scenes = first.clone();
         }
-        let settings = self.frame.settings.meant()?;
+        let mut settings = self.frame.settings.meant();
         self.slice.check(&settings)?;
         let sections = self.section.meant(&self.frame.camera, &self.frame.clip)?;
         let panorama = self.panorama.meant(self.frame.camera.size())?;
@@ -236,7 +239,10 @@ impl Render {
         let pictures = match sections {
             Some(sections) => Pictures::Sections(sections),
             None => {
-                let clip = self.frame.clip.meant()?;
+                let (clip, staged, fps) = self.frame.staged(settings)?;
+                settings = staged;
+                self.pictures
+                    .pace(fps.filter(|_| self.path.is_as_in_file()));
                 let views = self.path.views(&self.frame.camera, &self.scenes.places())?;
                 if panorama.is_some() && matches!(views, Views::Framed { .. }) {
                     return Err(Failure::Usage(
@@ -342,7 +348,7 @@ impl Render {
         let mut shots = of_moments(pictures.shots(&scene)?, moments);
         if let (Some(_), Some(up)) = (&panorama, self.horizon()) {
             for Shot { view, .. } in &mut shots {
-                view.camera = panorama::levelled(view.camera, up);
+                view.camera = levelled(view.camera, up);
             }
         }
         self.save_camera.save(shots.iter().map(|shot| &shot.view))?;
@@ -352,10 +358,13 @@ impl Render {
         };
         let size = |camera: &Camera| panorama.map_or((camera.width, camera.height), Panorama::size);
         let sizes = planned.iter().map(|one| size(&one.what.view.camera));
-        let pixels = panorama.map_or(0, Panorama::kept_pixels);
+        let pixels = panorama.map_or(0, Panorama::face_pixels);
         memory::check_pictures(sizes.clone(), pixels)?;
         let size = destination.size(sizes)?;
         let scene_report = SceneReport::new(&loaded);
+        let seen = planned.iter().map(|one| &one.what);
+        let seen = seen.map(|shot| (&shot.view.name[..], &shot.view.camera, &shot.clip));
+        let taken = near::of(&loaded.scene(), seen.filter(|_| panorama.is_none()));
         // Later commands need the Gaussians again, and slices are made of them.
         let scene = match destination.order().is_none() && !self.slice.needs_gaussians() {
             true => loaded.take_scene(),
@@ -368,7 +377,7 @@ impl Render {
         }
         let is_clipped = |one: &PictureJob<Shot>| !one.what.clip.is_everything();
         let clips = loaded.has_clips() || planned.iter().any(is_clipped);
-        let faces = panorama.map_or(1, |_| Panorama::FACES);
+        let faces = panorama.map_or(1, |_| Panorama::face_names().len());
         let repeat = match destination.order() {
             Some(_) => Repeat::Following,
             None => self.repeat(planned.len() * faces),
@@ -405,8 +414,13 @@ impl Render {
                 None => session.measured_frame(&view.camera, clip, settings, repeat)?,
             };
             let plane = shot.cut().map(|cut| &cut.plane);
-            let mut drawn =
-                RenderedPicture::from(FrameRecord::new(view, file.as_deref(), plane, measured));
+            let is_whole = settings.show == Show::Colour && sliced.is_none();
+            let is_faint = is_whole
+                && report::may_be_faint(&measured.stats.counts)
+                && report::is_faint(&session.headless.picture()?, settings.background);
+            let mut record = FrameRecord::new(view, file.as_deref(), plane, measured);
+            record.is_faint = is_faint;
+            let mut drawn = RenderedPicture::from(record);
             if file.is_some() {
                 drawn.picture = Some(match shot.cut().filter(|_| slicer.has_cues()) {
                     None => Pixels::Stored(session.headless.read_back()?),
@@ -431,7 +445,7 @@ impl Render {
             return Ok(kept.keep(place, loaded, session)?);
         }
 
-        let mode = name(settings.mode);
+        let mode = settings.mode.to_string();
         let report = RenderReport::new(&session, scene_report, size, mode, &written.pictures);
         let (faces, pictures) = (written.faces, written.pictures);
         let report = match panorama {
@@ -439,6 +453,7 @@ impl Render {
             None if several => report.with_frames(pictures),
             None => report,
         };
+        let report = report.with_near_cut(taken);
         session.headless.close()?;
         Ok(report.print(self.pictures.answer(), clips, &written.files)?)
     }
@@ -455,18 +470,32 @@ impl Render {
             what: shot, file, ..
         } = one;
         let (mut frames, mut pictures) = (Vec::new(), Vec::new());
-        for face in panorama.faces(&shot.view) {
-            let measured = session.measured_frame(&face.camera, &shot.clip, settings, repeat)?;
+        let view = &shot.view;
+        for (name, camera) in Panorama::face_names()
+            .iter()
+            .zip(panorama.faces(&view.camera))
+        {
+            let face = NamedView {
+                name: format!("{} {name}", view.name),
+                camera,
+                ..view.clone()
+            };
+            let measured = session.measured_frame(&camera, &shot.clip, settings, repeat)?;
             frames.push(FrameRecord::new(&face, file.as_deref(), None, measured));
             if file.is_some() {
                 pictures.push(session.headless.picture()?);
             }
         }
-        let picture = || profile.span("panorama", || panorama.assembled(&pictures));
+        let pictures: Option<[Picture; 6]> = pictures.try_into().ok();
+        let assembled = |faces| profile.span("panorama", || panorama.assembled(faces));
+        let mut together = FrameRecord::together(view, file.as_deref(), &frames);
+        together.seams = pictures.as_ref().map(|faces| panorama.seams(faces));
         Ok(RenderedPicture {
-            picture: file.as_ref().map(|_| Pixels::Decoded(picture())),
-            faces: frames.clone(),
-            ..RenderedPicture::from(FrameRecord::together(&shot.view, file.as_deref(), &frames))
+            picture: pictures
+                .as_ref()
+                .map(|faces| Pixels::Decoded(assembled(faces))),
+            faces: frames,
+            ..RenderedPicture::from(together)
         })
     }
 

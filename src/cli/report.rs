@@ -5,15 +5,17 @@ use std::path::{Path, PathBuf};
 
 use rara::camera_files::SavedCamera;
 use rara::gpu::{DeviceShape, NamedBytes};
-use rara::{Counts, FrameStats, Layer, Plane};
+use rara::{Counts, FrameStats, Layer, Picture, Plane};
 use serde::Serialize;
 
 use super::combine::{Combine, FrameSummary, combine};
+use super::near::NearCut;
 use super::output::{self, counted, grouped, say};
-use super::scene_layers::SceneLayers;
 use super::session::Session;
 use super::times;
 use super::views::NamedView;
+use rara::scene::layers::SceneLayers;
+use rara_shots::Seams;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Answer {
@@ -46,8 +48,16 @@ pub(super) struct RenderReport {
     frames: Vec<FrameRecord>,
     #[serde(skip_serializing_if = "Option::is_none")]
     mean: Option<FrameStats>,
+    /// Of panoramas, all together.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    seams: Option<Seams>,
     #[serde(skip)]
     faces: usize,
+    #[serde(skip)]
+    near: Option<NearCut>,
+    /// The pictures of which the clip leaves hardly anything.
+    #[serde(skip)]
+    faint: Vec<String>,
 }
 
 /// One picture, and the frames that measured it.
@@ -61,8 +71,14 @@ pub(super) struct FrameRecord {
     /// The section's plane, or the one that moves: normal and offset.
     plane: Option<[f64; 4]>,
     camera: SavedCamera,
+    /// Of a panorama.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) seams: Option<Seams>,
     #[serde(skip)]
     faces: usize,
+    /// True where its clip leaves hardly anything of what is in view.
+    #[serde(skip)]
+    pub(super) is_faint: bool,
     #[serde(flatten)]
     pub(super) measured: FrameSummary,
 }
@@ -84,7 +100,9 @@ impl FrameRecord {
             file: file.map(|file| file.display().to_string()),
             plane,
             camera: (&view.camera).into(),
+            seams: None,
             faces: 1,
+            is_faint: false,
             measured,
         }
     }
@@ -97,6 +115,31 @@ impl FrameRecord {
             ..Self::new(view, file, None, measured)
         }
     }
+}
+
+/// A picture that differs from its background by no more shows hardly anything, of 255.
+const FAINT: f32 = 16.0;
+
+/// True for counts of a frame of which the clip leaves hardly any splat whole, so that a look at its picture is worth the time.
+pub(super) fn may_be_faint(counts: &Counts) -> bool {
+    /// Fewer than this share.
+    const FEW: u64 = 100;
+    let in_view =
+        u64::from(counts.visible) + u64::from(counts.cutoff) + u64::from(counts.invisible);
+    counts.drawn > 0 && FEW * u64::from(counts.visible) < in_view
+}
+
+/// True for a picture that is its background but for hardly anything.
+pub(super) fn is_faint(picture: &Picture, background: Option<[f32; 3]>) -> bool {
+    let differs = |[r, g, b, a]: &[f32; 4]| match background {
+        None => *a,
+        Some(behind) => {
+            let channels = [r, g, b].into_iter().zip(behind);
+            channels.fold(0.0, |most, (own, behind)| (own - behind).abs().max(most))
+        }
+    };
+    let mut pixels = picture.pixels.iter().map(differs);
+    pixels.all(|differs| 255.0 * differs <= FAINT)
 }
 
 /// The kind of machine that pipelines were chosen for, and the reason.
@@ -115,6 +158,9 @@ pub(super) struct SceneReport {
     dropped: u64,
     /// One for each file, in order.
     layers: Vec<LayerReport>,
+    /// True where a layer with Gaussians is shown.
+    #[serde(skip)]
+    is_shown: bool,
 }
 
 #[derive(Debug, Serialize)]
@@ -149,6 +195,7 @@ impl SceneReport {
             repaired: loaded.repaired,
             dropped: loaded.dropped,
             layers: layers.map(report).collect(),
+            is_shown: loaded.is_shown(),
         }
     }
 }
@@ -162,15 +209,38 @@ impl RenderReport {
         let counts = self.measured.stats.counts;
         let empty = self.frames.iter().map(|frame| frame.measured.stats.counts);
         let empty = empty.filter(|counts| counts.drawn == 0).count();
+        if !self.scene.is_shown {
+            return; // which was said when it was read
+        }
         // In the middle of several, and in the only one.
         if counts.drawn == 0 && (self.frames.is_empty() || empty == self.frames.len()) {
-            let why = match (counts.invisible, self.scene.gaussians) {
-                (_, 0) => "the scene has no Gaussians",
-                (0, _) => "none of the Gaussians is in view; look from elsewhere",
-                _ => "the clip leaves nothing of what is in view",
+            let why: String = match (counts.invisible, self.scene.gaussians, &self.near) {
+                (_, 0, _) => "the scene has no Gaussians".into(),
+                (0, _, Some(near)) => near.why_empty(),
+                (0, ..) => "none of the Gaussians is in view; look from elsewhere".into(),
+                _ => "the clip leaves nothing of what is in view".into(),
             };
             say(format_args!("warning: the picture is empty: {why}"));
-        } else if empty > 0 && self.mean.is_none() && self.faces == 1 {
+            return;
+        }
+        if let Some(near) = &self.near {
+            say(format_args!("note: {near}"));
+        }
+        if let Some(first) = self.faint.first() {
+            let which = match self.frames.len() {
+                0 | 1 => String::new(),
+                all => format!(
+                    " in {} of {}, as in that of {first}",
+                    self.faint.len(),
+                    counted(all as u64, "picture")
+                ),
+            };
+            say(format_args!(
+                "warning: the clip leaves hardly anything of what is in view{which}: only edges of splats, {FAINT} of 255 at most; \
+                 rara info prints the scene's bounds"
+            ));
+        }
+        if empty > 0 && self.mean.is_none() && self.faces == 1 {
             // Behind one who looks at a scene there is nothing, and behind a plane that has crossed it neither.
             let which = self
                 .frames
@@ -193,6 +263,9 @@ impl RenderReport {
         written: &[PathBuf],
     ) -> rara::Result<()> {
         self.warn(clips);
+        if let Some(seams) = self.seams {
+            say(format_args!("note: {seams}"));
+        }
         match answer {
             Answer::Document => output::json(self)?,
             Answer::Lines => {}
@@ -218,7 +291,10 @@ impl RenderReport {
         let gaussians = scene.gaussians;
         let measured = FrameSummary::all(pictures.iter().map(|picture| &picture.measured));
         let faces = pictures.first().map_or(1, |picture| picture.faces);
+        let seams = pictures.iter().filter_map(|picture| picture.seams);
         let a_frame = measured.stats.wall_ms / faces as f64;
+        let faint = pictures.iter().filter(|picture| picture.is_faint);
+        let faint = faint.map(|picture| picture.name.clone()).collect();
         Self {
             device: headless.device_name().to_owned(),
             driver: headless.driver().to_owned(),
@@ -246,12 +322,20 @@ impl RenderReport {
             },
             frames: Vec::new(),
             mean: None,
+            near: None,
+            faint,
+            seams: Seams::together(&seams.collect::<Vec<_>>()),
             faces,
         }
     }
 
     pub(super) fn with_frames(self, frames: Vec<FrameRecord>) -> Self {
         Self { frames, ..self }
+    }
+
+    /// With what the near cut takes of the pictures.
+    pub(super) fn with_near_cut(self, near: Option<NearCut>) -> Self {
+        Self { near, ..self }
     }
 
     pub(super) fn with_mean(self) -> Self {
@@ -342,13 +426,22 @@ impl fmt::Display for CountsText<'_> {
             invisible,
             culled,
             drawn,
+            shortened,
         } = *self.0;
         let [visible, cutoff, invisible, culled, drawn] =
             [visible, cutoff, invisible, culled, drawn].map(|count| grouped(count.into()));
         write!(
             f,
             "{visible} visible, {cutoff} cutoff, {invisible} invisible, {culled} culled; {drawn} drawn"
-        )
+        )?;
+        match shortened {
+            0 => Ok(()),
+            _ => write!(
+                f,
+                "; {} weighed by fewer surfaces than cut them",
+                grouped(shortened.into())
+            ),
+        }
     }
 }
 

@@ -1,8 +1,7 @@
 //! How far a baked scene's pictures are from those of the exact cut.
 
-use rara::{Camera, Clip, HeadlessDesc, Mode, Picture, Scene, Settings, ShFormat};
-use rara_lab::frames;
-use rara_lab::measure::{self, Comparison};
+use rara::{Camera, Clip, HeadlessDesc, Mode, Scene, Settings, ShFormat};
+use rara_reference::comparison::{Comparison, compare};
 use serde::Serialize;
 
 use super::compare::Measures;
@@ -43,22 +42,15 @@ pub(super) fn residual(
     let mut pictures = Vec::new();
     for (done, camera) in cameras.iter().enumerate() {
         progress.update(done as u64, 2 * cameras.len() as u64);
-        let mut picture =
-            |mode| frames::picture(&mut session.headless, camera, clip, &settings(mode));
-        pictures.push([picture(Mode::Exact)?.0, picture(Mode::Hard)?.0]);
+        let mut picture = |mode| session.picture(camera, clip, &settings(mode));
+        pictures.push([picture(Mode::Exact)?, picture(Mode::Hard)?]);
     }
     session.headless.load_as(baked, ShFormat::Float)?;
     let (mut of_baked, mut of_hard, mut views) = (Vec::new(), Vec::new(), Vec::new());
     for (done, (camera, [exact, hard])) in cameras.iter().zip(pictures).enumerate() {
         progress.update((cameras.len() + done) as u64, 2 * cameras.len() as u64);
-        let (drawn, _) = frames::picture(
-            &mut session.headless,
-            camera,
-            &Clip::default(),
-            &settings(Mode::None),
-        )?;
-        let compare = |picture: &Picture| measure::compare(picture, &exact);
-        let (baked, hard) = (compare(&drawn)?, compare(&hard)?);
+        let drawn = session.picture(camera, &Clip::default(), &settings(Mode::None))?;
+        let (baked, hard) = (compare(&drawn, &exact)?, compare(&hard, &exact)?);
         views.push(ResidualView {
             eye: camera.eye.to_array(),
             baked: baked.into(),

@@ -2,27 +2,27 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::Args;
-use glam::DVec3;
-use rara::Error;
-
 use super::failure::Failure;
-use super::json_kind::JsonKind;
-use super::output::say;
+use super::json_kind::{JsonKind, wanted};
+use super::layer_names::{named, no_layer};
+use super::output::{self, counted, say};
 use super::pattern::filled;
 use super::reading::{self, Watch};
-use super::scene_file::{self, LayerEntry};
-use super::scene_layers::SceneLayers;
 use super::trained::TrainedOptions;
-use super::{layer_clip, layer_place, place, select, trained, training, values};
-use rara::scene::{Annotations, Format};
+use super::{layer_clip, place};
+use clap::Args;
+use rara::scene::Format;
+use rara::scene::layers::{
+    self, LayerEntry, SceneLayers, SelectionRequest, is_list, load_by, stem,
+};
 
 fn files() -> String {
     format!(
-        "Scene files or a folder; - is standard input\n\nFormats: {}, or a folder of SOG; or a folder that training left, of \
-         which the last iteration counts. Several files are the layers of one scene. rara render takes scene_{{:03}}.ply as the scenes of a film, one a picture. A layer has the name of its file, or a \
-         name given as NAME=FILE. A .json file lists layers: \
-         {{\"layers\":[{{\"path\":\"skin.ply\",\"name\":\"skin\",\"opacity\":0.5,\"visible\":true, \
+        "Scene files or folders; several become the layers of a scene; - is standard input\n\nThe formats are {}. A folder may \
+         be an SOG scene, or one that a trainer wrote: rara then reads the scene with the most training steps. A layer has the \
+         name of its file, or NAME if the file is given as NAME=FILE. For rara render, a pattern such as scene_{{:03}}.ply stands \
+         for the scenes of a film: each picture shows the file with the next number.\n\nA .json file is a list of layers, of \
+         which only path is required: {{\"layers\":[{{\"path\":\"skin.ply\",\"name\":\"skin\",\"opacity\":0.5,\"visible\":true, \
          \"antialiased\":true,\"low_pass\":0.3,\"position\":[x,y,z],\"rotation\":[w,x,y,z],\"scale\":s or [x,y,z],\"clip\":{{...}} or \
          \"clip_expr\":\"...\", \"select\":[{{\"name\":\"vessels\",\"where\":\"label in 3,4\"}}]}}]}}",
         Format::readable()
@@ -32,40 +32,55 @@ fn files() -> String {
 /// The flags that name the scene.
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Layers")]
-pub(super) struct SceneArgs {
-    /// Scene files or a folder; - is standard input
+pub struct SceneArgs {
+    /// Scene files or folders; several become the layers of a scene; - is standard input
     #[arg(value_name = "SCENE", required = true, help_heading = None, long_help = files())]
     files: Vec<PathBuf>,
-    /// Make a layer of the splats that fulfil a predicate (repeatable)
+    /// Move splats that match PREDICATE to a layer NAME (repeatable)
     ///
-    /// Predicates are opacity>0.5, size<0.01 (the largest standard deviation), red>0.6, green and blue (the colour
-    /// of degree 0), 'label in 3,4,7..9' (any property of the file; property(NAME) if its name means something
-    /// else) and 'inside(sphere:0,0,0,1)' (by the centre, in any expression as for --clip-expr), joined by and, or,
-    /// not and ( ). Comparisons are < <= > >= = and !=. Shares, as in inside(plane:x=40%), are those of the scene's
-    /// bounds as its files are listed, before --place and --hide. A selection takes from every file, or as
-    /// LAYER/NAME=PREDICATE from one layer, what earlier selections have left.
+    /// PREDICATE compares a number of each splat by <, <=, >, >=, = or !=, as in opacity>0.5. The number may be opacity (from
+    /// 0 to 1), size (the largest standard deviation), red, green or blue (the colour of degree 0, where 1 is full), or a
+    /// property of the file by its name. If this name is also a word of predicates, such as size, write property(NAME).
+    ///
+    /// 'label in 3,4,7..9' is true if the number is in the list; 7..9 includes 7, 9 and everything between.
+    /// 'inside(sphere:0,0,0,1)' is true if the centre is inside the shape; any expression for --clip-expr may stand there.
+    /// Percentages, as in inside(plane:x=40%), are those of the bounds that the scene has before --place and --hide. and, or,
+    /// not and ( ) combine predicates.
+    ///
+    /// NAME=PREDICATE takes splats from every file. LAYER/NAME=PREDICATE takes them from one layer, which may be an earlier
+    /// selection. If several selections match a splat, the first one takes it.
     #[arg(long, value_name = "NAME=PREDICATE")]
     select: Vec<String>,
-    /// Give one layer a clip of its own (repeatable)
+    /// Cut one layer by its own clip, not by --clip (repeatable)
     ///
-    /// The clip is an expression as for --clip-expr, in place of the frame's clip; a --section cuts the layer as
-    /// well. whole is a layer that nothing cuts. frame is a layer that the frame's clip cuts although its list says
-    /// otherwise.
+    /// EXPRESSION is written as for --clip-expr. It replaces the clip that --clip and the other clip flags make. The plane of
+    /// a --section cuts the layer too. With NAME=whole, only --clip-near and --clip-far cut the layer. NAME=frame removes the
+    /// clip that a list of layers gives the layer, so that --clip cuts it.
     #[arg(long, value_name = "NAME=EXPRESSION")]
     layer_clip: Vec<String>,
+    /// Read opacities or scales of a .ply as plain values, not as logits or logarithms
+    ///
+    /// 3DGS stores opacities as logits, and scales as logarithms. Some programs store plain values instead: opacities from 0
+    /// to 1, and scales in world units. A file does not say which of these it has. If all opacities or all scales are from 0
+    /// to 1, rara prints a note that suggests this flag. The flag applies to all .ply files of the scene.
+    #[arg(long, value_name = "opacity,scale", value_delimiter = ',', value_parser = ["opacity", "scale"])]
+    activated: Vec<String>,
     #[command(flatten)]
     trained: TrainedOptions,
-    /// Place a layer: move:X,Y,Z turn:X,Y,Z,DEGREES scale:S (repeatable)
+    /// Move, turn and scale a layer: 'move:X,Y,Z turn:X,Y,Z,DEGREES scale:S' (repeatable)
     ///
-    /// The place replaces what a list says of the layer. rotation:W,X,Y,Z is a quaternion in place of turn.
-    /// scale:X,Y,Z scales along each axis, and a negative number mirrors. Blanks separate several. The layer is
-    /// scaled, then turned about its own origin, then moved. Without NAME= all layers are placed.
+    /// PLACE has one or more of these three parts, in any order, with blanks between them. Whatever the order, the layer is
+    /// scaled first, then turned about its own origin, then moved. turn has an axis and an angle; rotation:W,X,Y,Z may
+    /// replace it by a quaternion. scale:X,Y,Z scales along each axis of the layer, and a negative number mirrors.
+    ///
+    /// NAME=PLACE places one layer; without NAME=, all layers are placed. PLACE replaces the position, rotation and scale
+    /// that a list of layers gives the layer.
     #[arg(long, value_name = "[NAME=]PLACE")]
     place: Vec<String>,
-    /// Leave a layer out of the picture (repeatable)
+    /// Hide a layer: neither draw nor write it (repeatable)
     #[arg(long, value_name = "NAME")]
     hide: Vec<String>,
-    /// Show a layer that its list hides (repeatable)
+    /// Show a layer that a list or project hides (repeatable)
     #[arg(long, value_name = "NAME")]
     unhide: Vec<String>,
 }
@@ -75,9 +90,34 @@ impl SceneArgs {
     pub(super) fn entries(&self) -> Result<Vec<LayerEntry>, Failure> {
         let mut entries = entries(&self.files)?;
         for text in &self.select {
-            select::add(&mut entries, text)?;
+            let flag = format!("--select {text}");
+            let usage = |error| Failure::Usage(format!("{flag}: {error}"));
+            let request: SelectionRequest = text.parse().map_err(usage)?;
+            if !request.add_to(&mut entries) {
+                let names = entries.iter().flat_map(LayerEntry::names);
+                return Err(no_layer(&flag, &request.layer.unwrap_or_default(), names));
+            }
         }
         Ok(entries)
+    }
+
+    /// Each of the scenes that are named by itself, with its name.
+    pub(super) fn each(&self) -> Result<Vec<(String, Self)>, Failure> {
+        let one = |file: &PathBuf| {
+            let name = match &entries(std::slice::from_ref(file))?[..] {
+                [only] => only.name.clone(),
+                _ => stem(file),
+            };
+            let files = vec![file.clone()];
+            Ok((
+                name,
+                Self {
+                    files,
+                    ..self.clone()
+                },
+            ))
+        };
+        self.files.iter().map(one).collect()
     }
 
     /// The scenes of a film, by number, where names of files have braces for it and there are such files; none where no name has.
@@ -122,9 +162,9 @@ impl SceneArgs {
     }
 
     /// The places of the scenes: what was typed, or the files that it names.
-    pub(super) fn places(&self) -> Vec<PathBuf> {
+    pub fn places(&self) -> Vec<PathBuf> {
         let places = |typed: &PathBuf| {
-            if typed.exists() && !scene_file::is_list(typed) {
+            if typed.exists() && !is_list(typed) {
                 return vec![typed.clone()];
             }
             // What is wrong with them is said when they are read.
@@ -140,6 +180,7 @@ impl SceneArgs {
         let [antialiasing, low_pass] = self.trained.texts();
         let all = [
             ("--select", &self.select[..]),
+            ("--activated", &self.activated),
             antialiasing,
             low_pass,
             ("--place", &self.place),
@@ -154,13 +195,23 @@ impl SceneArgs {
         !self.layer_clip.is_empty() || entries.iter().any(LayerEntry::has_clip)
     }
 
-    pub(super) fn load(&self) -> Result<SceneLayers, Failure> {
+    pub fn load(&self) -> Result<SceneLayers, Failure> {
         self.load_watched(&mut |_| ())
+    }
+
+    /// Reads the files with all that they have of each Gaussian.
+    pub(super) fn load_whole(&self) -> Result<SceneLayers, Failure> {
+        self.load_with(true, &mut |_| ())
     }
 
     /// Reads the files, and tells how far it has come.
     pub(super) fn load_watched(&self, watch: Watch<'_>) -> Result<SceneLayers, Failure> {
-        let mut loaded = load(self.entries()?, &self.trained, watch)?;
+        self.load_with(false, watch)
+    }
+
+    fn load_with(&self, is_whole: bool, watch: Watch<'_>) -> Result<SceneLayers, Failure> {
+        let entries = self.entries()?;
+        let mut loaded = load(entries, (&self.trained, &self.activated, is_whole), watch)?;
         place::apply(&self.place, &mut loaded)?;
         let flags = [
             ("--hide", &self.hide, false),
@@ -168,10 +219,13 @@ impl SceneArgs {
         ];
         for (flag, names, visible) in flags {
             for name in names {
-                for layer in loaded.named(flag, name)? {
+                for layer in named(&mut loaded, flag, name)? {
                     layer.state = layer.state.visible(visible);
                 }
             }
+        }
+        if !loaded.is_shown() {
+            say("warning: all that has Gaussians is hidden; --unhide NAME shows a layer");
         }
         // Last, as a clip may lie at a share of what is visible, where it is placed.
         layer_clip::apply(&self.layer_clip, &mut loaded)?;
@@ -181,7 +235,8 @@ impl SceneArgs {
 
 /// Reads the layers that these files are or list, and tells how far it has come.
 pub(super) fn load_files(paths: &[PathBuf], watch: Watch<'_>) -> Result<SceneLayers, Failure> {
-    load(entries(paths)?, &TrainedOptions::default(), watch)
+    let flags = (&TrainedOptions::default(), &[][..], false);
+    load(entries(paths)?, flags, watch)
 }
 
 fn entries(files: &[PathBuf]) -> Result<Vec<LayerEntry>, Failure> {
@@ -192,63 +247,38 @@ fn entries(files: &[PathBuf]) -> Result<Vec<LayerEntry>, Failure> {
     Ok(entries)
 }
 
-/// Reads the files in order, and prints what had to be repaired. `flags` say how layers were trained.
+/// Reads the files in order, and prints what had to be repaired. The flags say how layers were trained, which columns are stored as
+/// they are, and whether all is read that the files have of each Gaussian.
 fn load(
     entries: Vec<LayerEntry>,
-    flags: &TrainedOptions,
+    (trained, activated, is_whole): (&TrainedOptions, &[String], bool),
     watch: Watch<'_>,
 ) -> Result<SceneLayers, Failure> {
-    let mut all = SceneLayers::default();
+    tell_equal_names(&entries);
     let count = entries.len();
-    let mut read = Vec::with_capacity(count);
-    for (number, entry) in (1..).zip(entries) {
-        let (mut loaded, properties) = reading::read(&entry, (number, count), watch)?;
-        let stretch = entry.stretch.unwrap_or(DVec3::ONE);
-        layer_place::stretch(&mut loaded.gaussians, stretch)
-            .map_err(|error| Error::format(&entry.path, error.to_string()))?;
-        read.push((entry, loaded, properties));
-    }
-    let files = read
-        .iter()
-        .map(|(entry, loaded, _)| (entry, &loaded.gaussians));
-    let settled = scene_file::settled(files)?;
-    let mut before = 0;
-    for ((entry, mut loaded, properties), settled) in read.into_iter().zip(settled) {
-        let path = &entry.path;
-        let said = loaded.gaussians.training();
-        let training = said.antialiased(entry.antialiased.unwrap_or(said.antialiased));
-        let training = training.low_pass(entry.low_pass.unwrap_or(said.low_pass));
-        let set = loaded.gaussians.set_training(training);
-        set.map_err(|error| rara::Error::Invalid(format!("the layer '{}': {error}", entry.name)))?;
-        let is_said = entry.antialiased.or(loaded.antialiased).is_some();
-        let trained = (!is_said).then(|| trained::trained(path)).flatten();
-        all.repaired += loaded.report.repaired;
-        all.dropped += loaded.report.dropped;
-        let lines = loaded.report.lines();
-        all.notes.extend(
-            lines
-                .into_iter()
-                .map(|line| format!("{}: {line}", path.display())),
-        );
-        let count = loaded.gaussians.len() as u32;
-        let usual = || Annotations::of(&loaded.gaussians);
-        all.annotations
-            .append(loaded.annotations.unwrap_or_else(usual));
-        let stretch = entry.stretch.unwrap_or(DVec3::ONE);
-        let first = all.layers.len();
-        all.add((entry, settled), loaded.gaussians, &properties, before)?;
-        for layer in &mut all.layers[first..] {
-            layer.format = Some(loaded.format);
-            layer.stretch = stretch;
-            layer.trained.clone_from(&trained);
-        }
-        before = before.saturating_add(count);
-    }
-    flags.apply(&mut all)?;
-    for note in &all.notes {
+    let has = |column: &str| activated.iter().any(|one| one == column);
+    let mut loaded = load_by(entries, is_whole, |entry, number, options| {
+        let options = options.activated(has("opacity"), has("scale"));
+        reading::read((entry, options), (number + 1, count), watch)
+    })?;
+    trained.apply(&mut loaded)?;
+    for note in &loaded.notes {
         say(format_args!("note: {note}"));
     }
-    Ok(all)
+    Ok(loaded)
+}
+
+/// Says which names several files or parts of a file have. Selections of one name are meant to be one to its flags.
+fn tell_equal_names(entries: &[LayerEntry]) {
+    let mut names: Vec<_> = entries.iter().map(|entry| entry.name.as_str()).collect();
+    names.sort_unstable();
+    for alike in names.chunk_by(|a, b| a == b).filter(|all| all.len() > 1) {
+        output::warn_once(format!(
+            "note: {} are called '{}', and flags of that name mean all of them; NAME=FILE gives one another name",
+            counted(alike.len() as u64, "layer"),
+            alike[0]
+        ));
+    }
 }
 
 /// The layers of `FILE` or `NAME=FILE`, of which the first may be a list of layers. A file that exists goes before a name.
@@ -258,22 +288,27 @@ fn named_file(typed: &Path) -> Result<Vec<LayerEntry>, Failure> {
         Some((name, path)) if !typed.exists() && !name.is_empty() => (Some(name), Path::new(path)),
         _ => (None, typed),
     };
-    if scene_file::is_list(path) {
-        return match name {
-            Some(name) => Err(Failure::Usage(format!(
-                "{name}={}: a list of layers has names of its own; leave this one out",
-                path.display()
-            ))),
-            None => scene_file::read(path).map_err(|error| JsonKind::Scene.wanted(path, error)),
-        };
+    if let Some(name) = name
+        && is_list(path)
+    {
+        return Err(Failure::Usage(format!(
+            "{name}={}: a list of layers has names of its own; leave this one out",
+            path.display()
+        )));
     }
-    let mut entry = LayerEntry::from_path(path);
-    if let Some(trained) = training::scene_in(path)? {
-        entry.path = trained;
+    let mut entries =
+        layers::entries(path).map_err(|error| wanted(JsonKind::Scene, path, error))?;
+    match (&mut entries[..], name) {
+        ([entry], Some(name)) => entry.name = name.to_owned(),
+        ([entry], None) if path == Path::new(output::STANDARD) => entry.name = "stdin".into(),
+        (several, Some(name)) => {
+            return Err(Failure::Usage(format!(
+                "{name}={}: the file lists {} with names of their own; leave this one out",
+                path.display(),
+                counted(several.len() as u64, "layer")
+            )));
+        }
+        _ => {}
     }
-    if path == Path::new(values::STANDARD) {
-        entry.name = "stdin".into();
-    }
-    entry.name = name.map_or(entry.name, str::to_owned);
-    Ok(vec![entry])
+    Ok(entries)
 }

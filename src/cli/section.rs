@@ -1,16 +1,14 @@
 //! `--section`: planes that the camera faces square on, and what it sees of the scene behind them.
 
 use clap::Args;
-use glam::DVec3;
 use rara::clip::Expression;
+use rara::scene::Axis;
 use rara::{Bounds, Clip, ClipOp, Gaussians, Plane, Scene};
+use rara_shots::Visible;
 
-use super::axis::Axis;
 use super::camera::CameraArgs;
 use super::clip::{ClipArgs, Regions, joined};
 use super::failure::Failure;
-use super::framing::Visible;
-use super::lens::upright;
 use super::slice::Cut;
 use super::values;
 use super::views::NamedView;
@@ -21,17 +19,17 @@ use super::views::NamedView;
 pub(super) struct SectionArgs {
     /// Cut across an axis and face the cut: axial=0.4, z=0.1..0.9:9 (repeatable)
     ///
-    /// AXIS=SHARE cuts at a share from 0 to 1 of the robust bounds that rara info prints; AXIS=FROM..TO:COUNT is that many
-    /// sections. Axes are z or axial, y or coronal, x or sagittal; a leading ! looks from the other side. NAME is a
-    /// plane of a --clip-file, which then clips nothing else. The picture has no perspective.
+    /// AXIS=SHARE cuts at a share, from 0 to 1, of the extent of the robust bounds that rara info prints. AXIS=FROM..TO:COUNT is
+    /// COUNT sections in equal steps. Axes are z or axial, y or coronal, x or sagittal; a leading ! looks from the other side.
+    /// NAME is a plane of a --clip-file; the other clips of this file are then not used. The picture has no perspective.
     #[arg(long, value_name = "AXIS=SHARE|NAME", value_parser = wanted, allow_hyphen_values = true)]
     section: Vec<SectionRequest>,
-    /// Keep a slab of this thickness, world units [default: all behind]
+    /// Thickness of the kept slab, world units [default: no limit]
     #[arg(long, value_name = "T", value_parser = values::positive, allow_hyphen_values = true)]
     section_thickness: Option<f32>,
-    /// World units of a pixel [default: as many as show the scene]
+    /// Scale, world units per pixel [default: all that is visible fits]
     ///
-    /// By default as many as hold all that is visible, alike for all sections across an axis.
+    /// By default, all sections across one axis have the same scale.
     #[arg(long, value_name = "S", value_parser = values::positive, allow_hyphen_values = true)]
     section_scale: Option<f32>,
 }
@@ -120,10 +118,7 @@ pub(super) struct Sections {
     planned: Vec<SectionPlan>,
     /// What else clips.
     shapes: Regions,
-    thickness: Option<f64>,
-    scale: Option<f64>,
-    up: Option<DVec3>,
-    size: (u32, u32),
+    seen: rara_shots::Sections,
 }
 
 #[derive(Debug)]
@@ -203,13 +198,14 @@ impl SectionArgs {
                 }
             }
         }
+        let seen = rara_shots::Sections::new(camera.chosen_size())
+            .up(camera.chosen_up())
+            .scale(self.section_scale.map(f64::from))
+            .thickness(self.section_thickness.map(f64::from));
         let sections = Sections {
             planned,
             shapes,
-            thickness: self.section_thickness.map(f64::from),
-            scale: self.section_scale.map(f64::from),
-            up: camera.chosen_up(),
-            size: camera.chosen_size(),
+            seen,
         };
         // Errors that do not depend on the scene are found before it is read.
         let nothing = Gaussians::default();
@@ -249,35 +245,23 @@ impl Sections {
         let rest = joined(&others, ClipOp::And);
         let visible = Visible::nearly_all_of(scene);
         let section = |(number, planned): (usize, &SectionPlan)| {
-            let (name, plane, up) = match planned {
-                SectionPlan::Across(axis, share) => {
-                    let at = bounds.min.lerp(bounds.max, *share).dot(axis.along);
-                    let offset = -axis.forward.dot(axis.along) * at;
-                    let name = format!("{}={share}", axis.name);
-                    (name, Plane::new(axis.forward, offset)?, axis.up)
-                }
-                SectionPlan::Plane(name, plane) => (name.clone(), *plane, up_across(plane)),
+            let (name, seen) = match planned {
+                SectionPlan::Across(axis, share) => (
+                    format!("{}={share}", axis.name),
+                    self.seen.across((axis, *share), &bounds, &visible)?,
+                ),
+                SectionPlan::Plane(name, plane) => (name.clone(), self.seen.at(*plane, &visible)?),
             };
-            let up = self.up.map_or(up, |up| upright(plane.normal(), up));
-            let mut camera = visible.facing(&plane, up, self.size)?;
-            if let Some(scale) = self.scale {
-                camera = camera.fx(1.0 / scale).fy(1.0 / scale);
-            }
-            let mut own = vec![Expression::Shape(plane.into())];
-            if let Some(thickness) = self.thickness {
-                let far = Plane::new(-plane.normal(), thickness - plane.offset())?;
-                own.push(Expression::Shape(far.into()));
-            }
             Ok(Section {
                 view: NamedView {
                     number,
                     name,
-                    camera,
+                    camera: seen.camera,
                 },
-                own,
+                own: seen.shapes(),
                 others: others.clone(),
                 cut: Cut {
-                    plane,
+                    plane: seen.plane,
                     rest: rest.clone(),
                 },
             })
@@ -286,45 +270,5 @@ impl Sections {
     }
 }
 
-/// The direction that is up where a plane is seen that no axis is across: the world's, unless the plane lies level.
-fn up_across(plane: &Plane) -> DVec3 {
-    match plane.normal().y.abs() < 0.99 {
-        true => DVec3::NEG_Y,
-        false => DVec3::Z,
-    }
-}
-
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn shares_are_one_or_equal_steps() {
-        let shares = |text| Shares::parse(text).map(|shares| shares.all().collect::<Vec<_>>());
-        assert_eq!(shares("0.4"), Ok(vec![0.4]));
-        assert_eq!(shares("0..1:5"), Ok(vec![0.0, 0.25, 0.5, 0.75, 1.0]));
-        assert_eq!(shares("0.9..0.1:2"), Ok(vec![0.9, 0.1]));
-        assert_eq!(shares("0.2..0.4:1"), Ok(vec![0.30000000000000004]));
-        for text in [
-            "", "1.1", "-0.1", "nan", "0.1..0.9", "0..1:0", "0..2:3", "0..1:1e3", "..:1",
-        ] {
-            assert!(shares(text).is_err(), "{text}");
-        }
-    }
-
-    #[test]
-    fn what_is_no_section_is_refused_with_what_would_be() {
-        for (text, says) in [
-            ("", "axial=0.5"),
-            ("axial", "axial=0.5"),
-            ("w=0.5", "sagittal"),
-            ("z=2", "from 0 to 1"),
-            ("z=0.1..0.9", "FROM..TO:COUNT"),
-            ("z=0.1..0.9:x", "number of sections"),
-        ] {
-            let error = wanted(text).expect_err(text);
-            assert!(error.contains(says), "{text}: {error}");
-        }
-        assert_eq!(wanted("skin"), Ok(SectionRequest::Named("skin".into())));
-    }
-}
+mod tests;

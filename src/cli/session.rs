@@ -5,9 +5,9 @@
 
 use std::time::{Duration, Instant};
 
-use rara::{Camera, Clip, Headless, HeadlessDesc, Result, Scene, Settings, ShFormat};
-
-use rara_lab::frames::fresh;
+use rara::{
+    Camera, Clip, FrameStats, Headless, HeadlessDesc, Picture, Result, Scene, Settings, ShFormat,
+};
 
 use super::combine::FrameSummary;
 use super::output::Compiling;
@@ -56,8 +56,8 @@ impl Session {
         })
     }
 
-    /// Draws frames that are not measured, the ones after the first each from the one before, so that what the driver
-    /// compiles for them is in no frame that is.
+    /// Draws frames that are not measured, so that the driver compiles their shaders before the measured frames. Each frame may
+    /// reuse results of the one before.
     pub(super) fn warm_up<'a>(
         &mut self,
         frames: impl IntoIterator<Item = (&'a Camera, &'a Clip, &'a Settings)>,
@@ -106,12 +106,34 @@ impl Session {
         let begin = Instant::now();
         let mut frames = Vec::new();
         for _ in 0..most {
-            frames.push(fresh(&mut self.headless, camera, clip, settings)?);
+            frames.push(self.fresh(camera, clip, settings)?);
             if matches!(repeat, Repeat::UpTo(_)) && begin.elapsed() > PATIENCE {
                 break;
             }
         }
         Ok(FrameSummary::from_frames(&frames))
+    }
+
+    /// Draws a frame that reuses nothing of the one before.
+    pub(super) fn fresh(
+        &mut self,
+        camera: &Camera,
+        clip: &Clip,
+        settings: &Settings,
+    ) -> Result<FrameStats> {
+        self.headless.forget();
+        self.headless.render(camera, clip, settings)
+    }
+
+    /// The picture of such a frame.
+    pub(super) fn picture(
+        &mut self,
+        camera: &Camera,
+        clip: &Clip,
+        settings: &Settings,
+    ) -> Result<Picture> {
+        self.fresh(camera, clip, settings)?;
+        self.headless.picture()
     }
 
     /// Gives the layers the clips that they have in a scene of the same layers.
@@ -130,7 +152,7 @@ impl Session {
         settings: &Settings,
         repeat: u32,
     ) -> Result<FrameSummary> {
-        let frames = (0..repeat).map(|_| fresh(&mut self.headless, camera, clip, settings));
+        let frames = (0..repeat).map(|_| self.fresh(camera, clip, settings));
         Ok(FrameSummary::from_frames(
             &frames.collect::<Result<Vec<_>>>()?,
         ))

@@ -1,154 +1,201 @@
 //! The flags that say how a frame is drawn, and on which device.
 
-use clap::Args;
+use clap::error::Result;
+use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches};
 use rara::{
-    Decay, Headless, HeadlessDesc, Miss, Mode, PipelineCache, Raster, Settings, Show, SortBy,
+    Headless, HeadlessDesc, PipelineCache, Precision, Preset, Setting, SettingKind, Settings,
 };
 
-use super::failure::Failure;
-use super::precision::PrecisionArgs;
-#[cfg(feature = "view")]
-use super::values::{flag, name, text};
-use super::{output, process, values};
+use super::values::{self, named};
+use super::{output, process};
 
-/// How to draw.
-#[derive(Debug, Args)]
-#[command(next_help_heading = "Drawing")]
-pub(super) struct SettingsArgs {
-    /// How Gaussians that the clip cuts are drawn
-    #[arg(long, default_value = "exact")]
-    pub(super) mode: Mode,
-    /// What a cut splat's visible share scales
-    ///
-    /// By default linear for rara, and depth for exact.
-    #[arg(long, value_name = "LAW")]
-    decay: Option<Decay>,
-    /// Mode rara: deviations of the ellipsoid that is traced [default: 3]
-    #[arg(long, value_name = "K", value_parser = values::positive, allow_hyphen_values = true)]
-    sigma: Option<f32>,
-    /// Mode rara: what is kept where a ray misses [default: peak]
-    ///
-    /// A pixel's ray may miss the ellipsoid of a splat that the clip cuts.
-    #[arg(long, value_name = "WHAT")]
-    miss: Option<Miss>,
-    /// Ablation: treat every Gaussian as cut
-    #[arg(long)]
-    trace_all: bool,
-    #[command(flatten)]
-    look: LookArgs,
-}
+/// How to draw: all settings, or [`LookArgs`]. Their flags are the rows of the library's tables.
+#[derive(Debug, Clone, Default)]
+pub struct SettingsArgs<const CUTS: bool = true>(Settings);
 
 /// The settings that have nothing to do with clipping.
-#[derive(Debug, Args)]
-#[command(next_help_heading = "Drawing")]
-pub(super) struct LookArgs {
-    /// Three numbers from 0 to 1, #rrggbb or white [default: transparent]
-    #[arg(long, value_name = "COLOUR", value_parser = values::colour, allow_hyphen_values = true)]
-    background: Option<[f32; 3]>,
-    /// Highest degree of spherical harmonics [default: the scene's]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=3))]
-    sh_degree: Option<u32>,
-    /// How splats become pixels; the picture is the same
-    #[arg(long, value_name = "HOW", default_value = "auto")]
-    raster: Raster,
-    /// What is shown: colours, or what the clip does to each splat
-    #[arg(long, value_name = "WHAT", default_value = "colour")]
-    show: Show,
-    /// The order in which splats are blended [default: the scene's]
-    ///
-    /// glTF asks for distance, other files for depth, as 3DGS does; layers that differ are sorted by depth.
-    #[arg(long, value_name = "BY")]
-    sort: Option<SortBy>,
-    #[command(flatten)]
-    precision: PrecisionArgs,
+pub type LookArgs = SettingsArgs<false>;
+
+impl<const CUTS: bool> SettingsArgs<CUTS> {
+    pub fn meant(&self) -> Settings {
+        self.0
+    }
+
+    fn fields() -> impl Iterator<Item = &'static Setting<Settings>> {
+        Settings::ALL.iter().filter(|setting| match setting.kind {
+            SettingKind::Cut => CUTS,
+            SettingKind::Look => true,
+            _ => false,
+        })
+    }
+}
+
+/// The name of a flag among those of a command.
+fn id(name: &str) -> String {
+    name.replace('-', "_")
+}
+
+/// A flag with the help that a documentation's text is.
+fn described(name: &'static str, heading: &'static str, about: &str) -> Arg {
+    let (short, long) = values::help(about);
+    let arg = Arg::new(id(name)).long(name).help_heading(heading);
+    let arg = arg.help(short);
+    match long {
+        Some(long) => arg.long_help(long),
+        None => arg,
+    }
+}
+
+/// The flag of a setting. `usual` is a value that it has by itself.
+fn arg<S: Default + 'static>(
+    setting: &'static Setting<S>,
+    heading: &'static str,
+    usual: Option<String>,
+) -> Arg {
+    let arg = described(setting.name, heading, setting.about);
+    if setting.value.is_empty() {
+        return arg.action(ArgAction::SetTrue);
+    }
+    let arg = arg.value_name(setting.value);
+    let arg = match usual {
+        Some(usual) => arg.default_value(usual),
+        None => arg,
+    };
+    if !setting.choices.is_empty() {
+        return arg.value_parser(values::choices(setting.choices));
+    }
+    let check = move |text: &str| setting.check(text).map(|()| text.to_owned());
+    arg.allow_hyphen_values(true).value_parser(check)
+}
+
+/// Sets what the flags of these settings say.
+fn set<S: 'static>(
+    settings: &mut S,
+    fields: impl Iterator<Item = &'static Setting<S>>,
+    given: &ArgMatches,
+) -> Result<()> {
+    for setting in fields {
+        let text = match setting.value.is_empty() {
+            true => Some(given.get_flag(&id(setting.name)).to_string()),
+            false => given.get_one::<String>(&id(setting.name)).cloned(),
+        };
+        if let Some(text) = text {
+            let set = setting.read(settings, &text);
+            set.map_err(|error| clap::Error::raw(clap::error::ErrorKind::ValueValidation, error))?;
+        }
+    }
+    Ok(())
+}
+
+impl<const CUTS: bool> Args for SettingsArgs<CUTS> {
+    fn augment_args(command: Command) -> Command {
+        let usual = Settings::default();
+        let own = Self::fields().map(|setting| arg(setting, "Drawing", setting.text(&usual)));
+        let about = "Set all of the precision flags below; each of them overrides the preset.\n\n\
+                     The guide (src/guide/modes.md) says what each preset costs and how exact it is.";
+        let preset = described("preset", "Precision", about)
+            .value_name("PRESET")
+            .value_parser(named::<Preset>())
+            .default_value(Preset::default().name());
+        let precise = Precision::ALL.iter();
+        command
+            .args(own)
+            .arg(preset)
+            .args(precise.map(|setting| arg(setting, "Precision", None)))
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        Self::augment_args(command)
+    }
+}
+
+impl<const CUTS: bool> FromArgMatches for SettingsArgs<CUTS> {
+    fn from_arg_matches(given: &ArgMatches) -> Result<Self> {
+        let mut made = Self::default();
+        made.update_from_arg_matches(given)?;
+        Ok(made)
+    }
+
+    fn update_from_arg_matches(&mut self, given: &ArgMatches) -> Result<()> {
+        let preset = given.get_one::<Preset>("preset").copied();
+        self.0.precision = preset.unwrap_or_default().precision();
+        set(&mut self.0, Self::fields(), given)?;
+        set(&mut self.0.precision, Precision::ALL.iter(), given)
+    }
+}
+
+/// The flags of the fields that differ from `usual`, as a user would type them.
+#[cfg(feature = "view")]
+fn differences<S: 'static>(
+    own: &S,
+    usual: &S,
+    fields: impl Iterator<Item = &'static Setting<S>>,
+) -> Vec<String> {
+    let changed = fields.filter(|setting| setting.text(own) != setting.text(usual));
+    let flag = |setting: &Setting<S>| match setting.text(own) {
+        Some(text) if !setting.value.is_empty() => format!("--{} {text}", setting.name),
+        _ => format!("--{}", setting.name),
+    };
+    changed.map(flag).collect()
+}
+
+/// The flags of the settings that are not the default, as a user would type them; the mode always. The preset is the one that
+/// leaves the fewest single flags.
+#[cfg(feature = "view")]
+pub(super) fn flags(own: &Settings) -> Vec<String> {
+    let others = SettingsArgs::<true>::fields().filter(|setting| setting.name != "mode");
+    let mut flags = vec![format!("--mode {}", own.mode)];
+    flags.extend(differences(own, &Settings::default(), others));
+    let written = |preset: &Preset| {
+        let mut flags = Vec::new();
+        if *preset != Preset::default() {
+            flags.push(format!("--preset {preset}"));
+        }
+        let (own, usual) = (own.precision, preset.precision());
+        flags.extend(differences(&own, &usual, Precision::ALL.iter()));
+        flags
+    };
+    // The default comes first, which is taken of several that leave as few.
+    let usual = [Preset::default()];
+    let presets = usual.iter().chain(Preset::ALL);
+    flags.extend(
+        presets
+            .map(written)
+            .min_by_key(Vec::len)
+            .into_iter()
+            .flatten(),
+    );
+    flags
 }
 
 /// Which device, and how closely it is watched.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Device")]
-pub(super) struct DeviceArgs {
-    /// Number or part of the name of the device, as rara devices lists them
+pub struct DeviceArgs {
+    /// Device: its number or a part of its name, as rara devices lists them
     #[arg(long, value_name = "N|NAME")]
     device: Option<String>,
-    /// Load the Vulkan validation layer; any message is an error
+    /// Load the Vulkan validation layer, and fail if it reports anything
     ///
-    /// The Khronos layer also checks synchronisation.
+    /// The layer also checks synchronisation.
     #[arg(long)]
     validation: bool,
-    /// Compile everything anew, and keep nothing for the next run
+    /// Compile all shaders again, and do not store them for the next run
     ///
-    /// A driver may still keep something itself. By default what is compiled is kept in the folder RARA_CACHE (if
-    /// that is empty, nowhere), else in the user's cache folder.
+    /// Without this flag, rara stores compiled pipelines in the folder that the environment variable RARA_CACHE names, or in
+    /// the user's cache folder if RARA_CACHE is not set. If RARA_CACHE is empty, rara stores nothing. This flag does not
+    /// affect the cache that a driver may have.
     #[arg(long)]
     no_pipeline_cache: bool,
 }
 
-/// The flags of the settings that are not the default, as a user would type them; the mode always, the precision never.
-#[cfg(feature = "view")]
-pub(super) fn flags(own: &Settings) -> impl Iterator<Item = String> {
-    let usual = Settings::default();
-    // No flag has the form, and `precision::differences` the precision.
-    let (
-        mode,
-        decay,
-        sigma,
-        miss,
-        trace_all,
-        _form,
-        background,
-        sh_degree,
-        raster,
-        show,
-        sort_by,
-        _precision,
-    ) = own.fields();
-    let colour = |[r, g, b]: [f32; 3]| format!("--background {r},{g},{b}");
-    let flags = [
-        Some(format!("--mode {}", name(mode))),
-        decay.map(|decay| format!("--decay {}", name(decay))),
-        flag("sigma", sigma, usual.sigma, text),
-        flag("miss", miss, usual.miss, name),
-        trace_all.then(|| "--trace-all".into()),
-        background.map(colour),
-        sh_degree.map(|degree| format!("--sh-degree {degree}")),
-        flag("raster", raster, usual.raster, name),
-        flag("show", show, usual.show, name),
-        sort_by.map(|sort_by| format!("--sort {}", name(sort_by))),
-    ];
-    flags.into_iter().flatten()
-}
-
-impl SettingsArgs {
-    pub(super) fn meant(&self) -> Result<Settings, Failure> {
-        let defaults = self.look.meant()?;
-        Ok(defaults
-            .mode(self.mode)
-            .decay(self.decay)
-            .sigma(self.sigma.unwrap_or(defaults.sigma))
-            .miss(self.miss.unwrap_or(defaults.miss))
-            .trace_all(self.trace_all))
-    }
-}
-
-impl LookArgs {
-    pub(super) fn meant(&self) -> Result<Settings, Failure> {
-        Ok(Settings::default()
-            .background(self.background)
-            .sh_degree(self.sh_degree)
-            .raster(self.raster)
-            .show(self.show)
-            .sort_by(self.sort)
-            .precision(self.precision.meant()))
-    }
-}
-
 impl DeviceArgs {
-    pub(super) fn headless(&self) -> rara::Result<Headless> {
+    pub fn headless(&self) -> rara::Result<Headless> {
         process::make_drivers_folder();
         Headless::new(&self.meant())
     }
 
-    pub(super) fn meant(&self) -> HeadlessDesc {
+    pub fn meant(&self) -> HeadlessDesc {
         HeadlessDesc::default()
             .device(self.device.clone())
             .validation(self.validation)

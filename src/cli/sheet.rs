@@ -2,7 +2,7 @@
 
 use rara::Picture;
 
-use super::ink;
+use rara_scene::picture::ink;
 
 /// Pixels between two pictures.
 const GAP: u32 = 4;
@@ -49,16 +49,13 @@ fn set(picture: &mut Picture, x: u32, y: u32, pixel: [f32; 4]) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::values::name;
     use super::*;
-    use clap::ValueEnum as _;
     use rara::Mode;
 
     #[test]
     fn every_mode_can_be_labelled() {
-        for mode in Mode::value_variants() {
-            let name = name(*mode);
-            assert!(name.chars().all(|letter| letter.is_ascii_graphic()));
+        for mode in Mode::ALL {
+            assert!(mode.name().chars().all(|letter| letter.is_ascii_graphic()));
         }
     }
 

@@ -2,48 +2,48 @@
 
 use std::path::PathBuf;
 
-use clap::Args;
+use clap::{Args, Command};
 use clap_complete::Shell;
 
 use super::failure::Failure;
-use super::{help, output};
+use super::{output, values};
 
-/// Print the completions of a shell
+/// Print a completion script for a shell
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
-  rara completions bash > ~/.local/share/bash-completion/completions/rara
-  rara completions zsh > ~/.zfunc/_rara")]
+  PROGRAM completions bash > ~/.local/share/bash-completion/completions/PROGRAM
+  PROGRAM completions zsh > ~/.zfunc/_PROGRAM")]
 pub(super) struct Completions {
-    /// The shell
+    /// The shell that reads the script
     shell: Shell,
 }
 
 impl Completions {
-    pub(super) fn run(self) -> Result<(), Failure> {
+    pub(super) fn run(self, mut command: Command) -> Result<(), Failure> {
         let mut script = Vec::new();
-        clap_complete::generate(self.shell, &mut help::command(), "rara", &mut script);
+        let program = command.get_name().to_owned();
+        clap_complete::generate(self.shell, &mut command, program, &mut script);
         Ok(output::answer(&String::from_utf8_lossy(&script))?)
     }
 }
 
-/// Print the manual page, or write one for each command
+/// Print the manual page, or write a page for each command
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
-  rara man | man -l -
-  rara man -o ~/.local/share/man/man1")]
+  PROGRAM man | man -l -
+  PROGRAM man -o ~/.local/share/man/man1")]
 pub(super) struct Man {
-    /// Folder for the pages, rara.1 and one for each command; made unless it is there
-    #[arg(short, long, value_name = "DIR")]
+    /// Folder for the program's page and a page for each command; created if it does not exist
+    #[arg(short, long, value_name = "DIR", value_parser = values::one_file())]
     output: Option<PathBuf>,
 }
 
 impl Man {
-    pub(super) fn run(self) -> Result<(), Failure> {
-        let mut command = help::command();
+    pub(super) fn run(self, mut command: Command) -> Result<(), Failure> {
         command.build();
-        let page = |command: clap::Command| {
+        let page = |command: Command| {
             let mut page = Vec::new();
             let rendered = clap_mangen::Man::new(command).render(&mut page);
             rendered.map_err(rara::Error::io("the manual page"))?;
@@ -53,15 +53,15 @@ impl Man {
             return Ok(output::answer(&page(command)?)?);
         };
         output::make_folder(folder)?;
+        let program = command.get_name().to_owned();
         let parts = command
             .get_subcommands()
             .filter(|part| part.get_name() != "help");
         for part in parts.cloned() {
-            let name = format!("rara-{}", part.get_name());
-            let text = page(part)?;
-            output::text(&folder.join(format!("{name}.1")), &text)?;
+            let name = format!("{program}-{}.1", part.get_name());
+            output::text(&folder.join(name), &page(part)?)?;
         }
-        output::text(&folder.join("rara.1"), &page(command.clone())?)?;
+        output::text(&folder.join(format!("{program}.1")), &page(command)?)?;
         output::say(format_args!(
             "wrote the manual pages to {}",
             folder.display()

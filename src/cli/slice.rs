@@ -1,16 +1,13 @@
 //! `--slice`, `--outline` and `--rim`: what lies on a section's plane.
 
 use clap::Args;
-use rara::scene::cross_section;
-use rara::{
-    Clip, Cue, Cues, Gaussians, HeadlessDesc, Layer, Picture, Plane, Raster, Scene, Settings, Show,
-};
-use rara_lab::frames;
+use rara::{Clip, Cue, Cues, HeadlessDesc, Picture, Plane, Raster, Scene, Settings, Show};
+use rara_shots::Slice;
 
 use super::combine::FrameSummary;
 use super::failure::Failure;
 use super::session::{Repeat, Session};
-use super::values::{self, name};
+use super::values;
 use super::views::NamedView;
 
 /// What is shown of a section's plane.
@@ -19,22 +16,26 @@ use super::views::NamedView;
 pub(super) struct SliceArgs {
     /// Show the colours on the section's plane, not the scene behind it
     ///
-    /// Each splat counts by its opacity on the plane, in no order.
+    /// The colour of a pixel is the mean of the splats' colours on the plane, each weighted by the splat's opacity there. The order
+    /// of the splats has no effect.
     #[arg(long, conflicts_with = "aov")]
     slice: bool,
     /// Draw a line around each cut surface
     #[arg(long, value_name = "R,G,B", value_parser = values::colour)]
     outline: Option<[f32; 3]>,
-    /// Width of that line, pixels
+    /// Width of the line of --outline, pixels
     #[arg(long, value_name = "PX", value_parser = values::positive, default_value_t = 2.0)]
     outline_width: f32,
     /// Tint each cut surface along its edge
     #[arg(long, value_name = "R,G,B", value_parser = values::colour)]
     rim: Option<[f32; 3]>,
-    /// Width of that tint, pixels
+    /// Width of the tint of --rim, pixels
     #[arg(long, value_name = "PX", value_parser = values::positive, default_value_t = 24.0)]
     rim_width: f32,
-    /// Alpha of a slice at which the cut surface begins, 0 to 1
+    /// Alpha from which a pixel of a slice counts as cut surface, 0 to 1
+    ///
+    /// --outline and --rim use it: they treat a pixel as cut surface if a picture with --slice would have at least this alpha
+    /// there.
     #[arg(long, value_name = "ALPHA", value_parser = values::share, default_value_t = 0.1)]
     cut_level: f32,
 }
@@ -58,7 +59,6 @@ impl SliceArgs {
         if !self.slice || matches!(raster, Raster::Auto | Raster::Tiles) {
             return Ok(());
         }
-        let raster = name(raster);
         Err(Failure::Usage(format!(
             "--slice is made by tiles alone, and --raster {raster} draws none: leave out one of them"
         )))
@@ -104,10 +104,10 @@ impl<'a> Slicer<'a> {
         (view, cut, settings): (&NamedView, &Cut, &Settings),
         repeat: Repeat,
     ) -> Result<FrameSummary, Failure> {
-        let flat = self.cross_sections(&cut.plane);
+        let slice = Slice::new(&self.scene, &cut.plane);
         session
             .headless
-            .load_as(self.flat_scene(&flat), settings.precision.sh)?;
+            .load_as(slice.scene(), settings.precision.sh)?;
         let shown = settings.show(Show::Mean);
         Ok(session.measured_frame(&view.camera, &cut.rest, &shown, repeat)?)
     }
@@ -121,8 +121,8 @@ impl<'a> Slicer<'a> {
         let Some(cues) = self.args.cues() else {
             return Ok(());
         };
-        let flat = self.cross_sections(&cut.plane);
-        let scene = self.flat_scene(&flat);
+        let slice = Slice::new(&self.scene, &cut.plane);
+        let scene = slice.scene();
         let sh = settings.precision.sh;
         let mut session = match self.session.take() {
             Some(mut session) => {
@@ -136,33 +136,13 @@ impl<'a> Slicer<'a> {
             .show(Show::Mean)
             .raster(Raster::Auto)
             .background(None);
-        let (slice, _) = frames::picture(&mut session.headless, &view.camera, &cut.rest, &shown)?;
+        let slice = session.picture(&view.camera, &cut.rest, &shown)?;
         self.session = Some(session);
         Ok(picture.draw_cues(&slice, &cues)?)
     }
 
     pub(super) fn has_cues(&self) -> bool {
         self.args.cues().is_some()
-    }
-
-    fn cross_sections(&self, plane: &Plane) -> Vec<Gaussians> {
-        let layers = self.scene.layers().iter();
-        let section = |layer: &Layer<'_>| {
-            cross_section(layer.gaussians(), &plane.in_scene(&layer.placement()))
-        };
-        layers.map(section).collect()
-    }
-
-    fn flat_scene<'b>(&self, flat: &'b [Gaussians]) -> Scene<'b> {
-        let layers = self.scene.layers().iter().zip(flat);
-        let layers = layers.map(|(layer, flat)| {
-            let made = Layer::new(layer.name(), flat).with(layer.state());
-            match layer.clip() {
-                Some(clip) => made.clipped(clip.clone()),
-                None => made,
-            }
-        });
-        layers.collect()
     }
 
     /// Frees what was opened for cues.

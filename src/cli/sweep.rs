@@ -12,20 +12,21 @@ use super::clip::{Regions, joined};
 use super::combine::FrameSummary;
 use super::failure::Failure;
 use super::frame::FrameArgs;
-use super::framing;
 use super::kept::SessionCache;
+use super::layer_names;
 use super::memory;
+use super::near;
 use super::pictures::{self, Destination, Order, PictureArgs, Pixels, Plan, RenderedPicture};
 use super::profile::{Profile, ProfileArgs};
-use super::region::Region;
 use super::report::{FrameRecord, RenderReport, SceneReport};
 use super::save_camera::SaveCameraArgs;
 use super::scenes::SceneArgs;
-use super::values::{self, name};
+use super::values;
 use super::views::Views;
 use rara::scene::extent_along;
+use rara::scene::layers::Region;
 
-/// Move a plane across the scene, or any clip to another, in equal steps
+/// Move a plane across the scene, or change one clip into another, in equal steps
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
@@ -36,33 +37,35 @@ Examples:
   rara sweep scene.ply --from sphere:0,0,0,.1 --to sphere:0,0,0,2 -o frames
   rara sweep scene.ply --from 'all(plane:1,0,0,0, box:0,0,0,1,1,1)' --to 'all(plane:0,1,0,0, box:0,0,0,1,1,1)' -o turn
 
-Of a plane across the scene the first frame keeps the whole of the robust bounds, and the last one nothing. The third frame and those after it compute only what the moving clip changes. Other clip shapes
-stand still; --clip-op joins the moving ones to them too. The JSON has the frames, their medians on top and their means under \"mean\".")]
+If a plane moves across the scene, the first frame keeps everything inside the robust bounds that rara info prints, and the
+last frame keeps nothing inside them. From the third frame on, a frame computes only what the moving clip changes. The
+shapes of --clip and similar flags do not move; --clip-op combines the moving shapes with them. The JSON has the statistics
+of each frame, their medians at the top level, and their means under \"mean\".")]
 pub(super) struct Sweep {
-    /// Pictures, a folder or a film, as for rara render
+    /// File names of pictures, a folder or a film, as for rara render
     #[arg(short, long, value_name = "OUT")]
     output: Option<PathBuf>,
-    /// The normal of a plane that moves across the scene; it points to the side that stays
+    /// The normal of a plane that moves across the scene; it points to the side that is kept
     #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]
     #[arg(required_unless_present = "from", conflicts_with = "from")]
     clip_normal: Option<DVec3>,
     /// The clip of the first frame, an expression as for --clip-expr
     #[arg(long, value_name = "EXPRESSION", value_parser = str::parse::<Region>, allow_hyphen_values = true)]
     from: Option<Region>,
-    /// The clip of the last frame, with the same shapes in the same places
+    /// The clip of the last frame; it has the same kinds of shapes in the same order as --from
     ///
-    /// Points, sizes and radii move evenly, rotations and normals along the shortest arcs.
+    /// Points, sizes and radii are interpolated linearly, and rotations and normals along the shortest arcs.
     #[arg(long, value_name = "EXPRESSION", value_parser = str::parse::<Region>, allow_hyphen_values = true)]
     to: Option<Region>,
     /// Number of frames
     #[arg(long, value_name = "N", default_value_t = 30, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     frames: u32,
-    /// Render each frame from nothing, to the same bytes
+    /// Render each frame without reusing results; the pictures are the same
     ///
-    /// Without this flag a frame reuses what stays the same.
+    /// Without this flag, a frame reuses those results of the previous frame that the moving clip does not change.
     #[arg(long)]
     independent: bool,
-    /// Render each frame N times, nothing carried over between them, and take the medians
+    /// Render each frame N times, without reusing results, and report medians
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     repeat: u32,
     #[command(flatten)]
@@ -102,11 +105,10 @@ impl Sweep {
     /// What the flags mean: the settings, the shapes that stand still, and the camera. Errors that do not depend on the scene
     /// are found before it is read.
     fn meant(&self) -> Result<(Settings, Regions, Views), Failure> {
-        let settings = self.frame.settings.meant()?;
+        let (shapes, settings, _) = self.frame.staged(self.frame.settings.meant())?;
         if settings.show == Show::Count {
             pictures::needs_floats(self.output.as_deref(), pictures::COUNTS)?;
         }
-        let shapes = self.frame.clip.meant()?;
         self.moving(|region| Ok(region.example().clone()))?;
         let views = self.frame.camera.meant(&self.scenes.places())?;
         Ok((settings, shapes, views.single("a sweep")?))
@@ -160,10 +162,11 @@ impl Sweep {
         let session_of = (device, &self.profile, sh);
         let (mut place, mut loaded) = kept.load(profile, &self.scenes, &session_of)?;
         regions.settle(&mut loaded)?;
+        layer_names::tell_own_clips(&loaded);
         let scene = loaded.scene();
         let bounds = LazyCell::new(|| Bounds::of(&scene));
         let moving = self.moving(|region| region.resolve(|| *bounds))?;
-        let view = framing::views(views, &scene)?.remove(0);
+        let view = views.in_scene(&scene)?.remove(0);
         self.save_camera.save([&view].into_iter())?;
         let camera = view.camera;
         let (mut shapes, op) = (regions.expressions(&scene)?, regions.op());
@@ -178,6 +181,8 @@ impl Sweep {
         let size = (camera.width, camera.height);
         memory::check_picture(size, 0)?;
         let scene_report = SceneReport::new(&loaded);
+        let whole = joined(&shapes, op);
+        let taken = near::of(&scene, [(&view.name[..], &camera, &whole)].into_iter());
         let scene = match destination.order() {
             Some(_) => loaded.scene(), // later commands need the Gaussians again
             None => loaded.take_scene(),
@@ -221,9 +226,12 @@ impl Sweep {
             return Ok(kept.keep(place, loaded, session)?);
         }
 
-        let mode = name(settings.mode);
+        let mode = settings.mode.to_string();
         let report = RenderReport::new(&session, scene_report, size, mode, &written.pictures);
-        let report = report.with_frames(written.pictures).with_mean();
+        let report = report
+            .with_frames(written.pictures)
+            .with_mean()
+            .with_near_cut(taken);
         session.headless.close()?;
         Ok(report.print(self.pictures.answer(), true, &written.files)?)
     }

@@ -1,31 +1,30 @@
 //! `--antialiasing` and `--low-pass`: how layers were trained, which is how they are drawn.
 
-use std::path::Path;
-
 use clap::Args;
 use rara::scene::Format;
 use rara::{SortBy, Training};
 
 use super::failure::Failure;
-use super::scene_layers::{LoadedLayer, SceneLayers};
-use super::training;
-use super::values::name;
+use super::layer_names::named;
+use rara::scene::layers::{LoadedLayer, SceneLayers};
 
 /// What flags say of how the scene was trained.
 #[derive(Debug, Clone, Default, Args)]
 pub(super) struct TrainedOptions {
-    /// Whether the scene was trained antialiased: on, off or auto
+    /// Whether training used antialiasing: on, off or auto
     ///
-    /// Splats that the low-pass makes larger than they are then get no brighter, as scenes need it that were
-    /// trained antialiased (3DGS --antialiasing, gsplat, Mip-Splatting). auto, the default, goes by what the files
-    /// and the training's settings beside them say. NAME=on says it of one layer (repeatable).
+    /// The low-pass widens splats, which makes small ones too bright. Trainers with antialiasing reduce the opacity of small
+    /// splats to compensate (3DGS --antialiasing, gsplat and nerfstudio 'antialiased', Mip-Splatting, Brush 'mip'). With on,
+    /// rara does the same. With auto, the default, it does so if the file of a layer or the settings of its training beside
+    /// this file say so. NAME=on applies to one layer only (repeatable).
     #[arg(long, value_name = "on|off|auto")]
     antialiasing: Vec<String>,
-    /// The low-pass that the scene was trained with, px^2, or auto
+    /// Variance of the low-pass used in training, px^2, or auto
     ///
-    /// It is added to the variance of each splat along either axis of the picture: 0.01 to 10. 3DGS, gsplat and
-    /// nerfstudio train with 0.3, Mip-Splatting and Brush's mip mode with 0.1. auto, the default, goes by what the
-    /// file says and who wrote it. NAME=0.1 says it of one layer (repeatable).
+    /// The low-pass widens each splat: it adds this variance in both directions of the picture. The value is from 0.01 to 10.
+    /// 3DGS, gsplat and nerfstudio train with 0.3, and Mip-Splatting and the mip mode of Brush train with 0.1. With auto, the
+    /// default, rara uses the value that the file of a layer states, or that of the trainer that wrote the file. NAME=0.1
+    /// applies to one layer only (repeatable).
     #[arg(long, value_name = "PX2|auto")]
     low_pass: Vec<String>,
 }
@@ -60,7 +59,7 @@ impl<'a, T> TrainingNote<'a, T> {
                 })?),
             };
             if let Some(name) = name {
-                loaded.named(flag, name)?;
+                named(loaded, flag, name)?;
             }
             Ok(Self { name, value })
         });
@@ -76,16 +75,6 @@ impl<'a, T> TrainingNote<'a, T> {
         said.find(|said| said.name.is_none_or(|name| name == layer))?
             .value
     }
-}
-
-/// The note on a file, which says nothing itself, where the settings beside it say that it was trained antialiased.
-pub(super) fn trained(file: &Path) -> Option<String> {
-    let by = training::antialiased_by(file)?;
-    Some(format!(
-        "{}: it is drawn antialiased, as {} says that it was trained; --antialiasing off draws it as it is",
-        file.display(),
-        by.display()
-    ))
 }
 
 impl TrainedOptions {
@@ -120,12 +109,15 @@ impl TrainedOptions {
             loaded,
         )?;
         for layer in &mut loaded.layers {
-            let trained = layer.trained.take();
             let mut training = layer.gaussians.training();
             if let Some(antialiased) = TrainingNote::of_layer(&antialiasing, &layer.name) {
                 training.antialiased = antialiased;
-            } else if let Some(note) = trained {
-                training.antialiased = true;
+            } else if let (Some(by), Some(file)) = (&layer.antialiased_by, &layer.file) {
+                let note = format!(
+                    "{}: it is drawn antialiased, as {} says that it was trained; --antialiasing off draws it as it is",
+                    file.display(),
+                    by.display()
+                );
                 // Selections make several layers of a file.
                 if loaded.notes.last() != Some(&note) {
                     loaded.notes.push(note);
@@ -202,7 +194,7 @@ pub(super) fn lost(format: Format, training: Training) -> Option<String> {
     let flags = [
         (training.antialiased != usual.antialiased).then(|| "--antialiasing on".to_owned()),
         (training.low_pass != usual.low_pass).then(|| format!("--low-pass {}", training.low_pass)),
-        (training.sort_by != usual.sort_by).then(|| format!("--sort {}", name(training.sort_by))),
+        (training.sort_by != usual.sort_by).then(|| format!("--sort {}", training.sort_by)),
     ];
     let flags: Vec<_> = flags.into_iter().flatten().collect();
     match (flags.is_empty(), format) {

@@ -4,16 +4,22 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-use clap::ValueEnum;
-use clap::builder::{OsStringValueParser, TypedValueParser};
+use clap::builder::{OsStringValueParser, PossibleValue, PossibleValuesParser, TypedValueParser};
 use glam::{DQuat, DVec3};
+
+use super::output::{self, STANDARD};
+use super::pattern::is_several;
+use rara_base::value::Value;
+pub(super) use rara_scene::picture::size;
+
+/// A colour: `r,g,b`, each 0 to 1, `#rgb`, `#rrggbb` or one of a few names.
+pub(super) fn colour(text: &str) -> Result<[f32; 3], String> {
+    Value::read(text)
+}
 
 /// `COUNT` numbers between commas, all finite.
 pub(super) fn numbers<const COUNT: usize>(text: &str) -> Result<[f64; COUNT], String> {
-    let list = rara::clip::numbers(text).map_err(|error| error.to_string())?;
-    let found = list.len();
-    list.try_into()
-        .map_err(|_| format!("expected {COUNT} numbers with commas between them, found {found}"))
+    rara::clip::numbers_of(text).map_err(|error| error.to_string())
 }
 
 pub(super) fn vec3(text: &str) -> Result<DVec3, String> {
@@ -55,55 +61,6 @@ pub(super) fn direction(text: &str) -> Result<DVec3, String> {
         return Err("a direction cannot be zero".into());
     }
     Ok(vector)
-}
-
-/// `WxH`. The library says which sizes are possible.
-pub(super) fn size(text: &str) -> Result<(u32, u32), String> {
-    let parts = text.split_once(['x', 'X']);
-    let sides = parts.and_then(|(w, h)| Some((w.trim().parse().ok()?, h.trim().parse().ok()?)));
-    sides.ok_or_else(|| "expected a width and a height like 1024x768".into())
-}
-
-/// `r,g,b`, each 0 to 1, `#rgb`, `#rrggbb` or one of a few names.
-pub(super) fn colour(text: &str) -> Result<[f32; 3], String> {
-    if let Some(digits) = text.strip_prefix('#') {
-        return hexadecimal(digits)
-            .ok_or_else(|| "expected three or six hexadecimal digits, as in #fff".into());
-    }
-    if let Some((_, rgb)) = COLOURS.iter().find(|(name, _)| *name == text) {
-        return Ok(*rgb);
-    }
-    let rgb = numbers::<3>(text).map_err(|error| {
-        let names: Vec<_> = COLOURS.iter().map(|(name, _)| *name).collect();
-        format!("{error}; or #rrggbb, or one of {}", names.join(", "))
-    })?;
-    if rgb.iter().any(|c| !(0.0..=1.0).contains(c)) {
-        return Err("red, green and blue are each between 0 and 1".into());
-    }
-    Ok(rgb.map(|c| c as f32))
-}
-
-const COLOURS: [(&str, [f32; 3]); 7] = [
-    ("black", [0.0, 0.0, 0.0]),
-    ("white", [1.0, 1.0, 1.0]),
-    ("grey", [0.5, 0.5, 0.5]),
-    ("gray", [0.5, 0.5, 0.5]),
-    ("red", [1.0, 0.0, 0.0]),
-    ("green", [0.0, 1.0, 0.0]),
-    ("blue", [0.0, 0.0, 1.0]),
-];
-
-fn hexadecimal(digits: &str) -> Option<[f32; 3]> {
-    let values = digits.chars().map(|digit| digit.to_digit(16));
-    let values: Vec<u32> = values.collect::<Option<_>>()?;
-    let of = |value: u32| value as f32 / 255.0;
-    match *values.as_slice() {
-        [r, g, b] => Some([r, g, b].map(|v| of(17 * v))),
-        [r1, r0, g1, g0, b1, b0] => {
-            Some([(r1, r0), (g1, g0), (b1, b0)].map(|(h, l)| of(16 * h + l)))
-        }
-        _ => None,
-    }
 }
 
 /// A number that is as `expected`.
@@ -160,16 +117,21 @@ pub(super) fn share(text: &str) -> Result<f32, String> {
     )
 }
 
-pub(super) fn ply_path(text: &str) -> Result<PathBuf, String> {
-    let path = PathBuf::from(text);
-    let fits = path
-        .extension()
-        .is_some_and(|e| e.eq_ignore_ascii_case("ply"));
-    if fits {
-        Ok(path)
-    } else {
-        Err("a scene's name ends in .ply".into())
+/// The name of one scene's file, or of several.
+pub(super) fn ply_path(path: impl Into<PathBuf>) -> Result<PathBuf, &'static str> {
+    let path = path.into();
+    match output::ends_in(&path, "ply") {
+        true => Ok(path),
+        false => Err("a scene's name ends in .ply"),
     }
+}
+
+/// The name of one file, or of one folder.
+pub fn one_file() -> impl TypedValueParser<Value = PathBuf> {
+    OsStringValueParser::new().try_map(|name| match is_several(Path::new(&name)) {
+        false => Ok(PathBuf::from(name)),
+        true => Err("this is written once, and braces stand for several names: leave them out"),
+    })
 }
 
 /// A picture's file name; its ending says the format. It need not be text.
@@ -190,77 +152,34 @@ pub(super) fn is_folder(path: &Path) -> bool {
     name.last().is_some_and(is_separator) || (path != Path::new(STANDARD) && path.is_dir())
 }
 
-/// The name of standard input and standard output in place of a file.
-pub(super) const STANDARD: &str = "-";
-
+#[cfg(feature = "view")]
 pub(super) fn picture_file() -> impl TypedValueParser<Value = PathBuf> {
     OsStringValueParser::new().try_map(picture_path)
 }
 
-/// The name of a value on the command line and in the statistics.
-pub(super) fn name(value: impl ValueEnum) -> String {
-    let value = value.to_possible_value();
-    value.map_or_else(String::new, |value| value.get_name().into())
+/// The parser of a choice by its name.
+pub fn named<T: Value + Clone + Send + Sync>() -> impl TypedValueParser<Value = T> {
+    choices(T::CHOICES).try_map(|name| T::read(&name))
 }
 
-/// The flag of a value that is not the default, as a user would type it.
-#[cfg(feature = "view")]
-pub(super) fn flag<T: PartialEq>(
-    flag: &str,
-    own: T,
-    default: T,
-    text: impl Fn(T) -> String,
-) -> Option<String> {
-    let own = (own != default).then(|| text(own))?;
-    Some(format!("--{flag} {own}"))
+/// The parser of one of these names, each with its documentation.
+pub(super) fn choices(names: &'static [(&'static str, &'static str)]) -> PossibleValuesParser {
+    let all = names.iter();
+    PossibleValuesParser::new(all.map(|(name, about)| PossibleValue::new(name).help(help(about).0)))
 }
 
-/// A number on the command line.
-#[cfg(feature = "view")]
-pub(super) fn text(number: impl ToString) -> String {
-    number.to_string()
+/// The help that a documentation's text is: its first paragraph without the stop at the end, and all of it where that is longer.
+pub(super) fn help(about: &str) -> (String, Option<String>) {
+    let paragraphs = about.split("\n\n").map(|paragraph| {
+        let lines: Vec<_> = paragraph.lines().map(str::trim).collect();
+        lines.join(" ").trim().to_owned()
+    });
+    let all: Vec<String> = paragraphs.collect();
+    let first = all[0].strip_suffix('.').unwrap_or(&all[0]).to_owned();
+    let rest = &all[1..];
+    let long = (!rest.is_empty()).then(|| format!("{first}\n\n{}", rest.join("\n\n")));
+    (first, long)
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn vectors_take_signs_spaces_and_exponents() {
-        assert_eq!(vec3("-1, 2.5,-3e2"), Ok(DVec3::new(-1.0, 2.5, -300.0)));
-        assert!(vec3("1,2").is_err());
-        assert!(vec3("1,2,3,4").is_err());
-        assert!(vec3("1,,3").is_err());
-        assert!(vec3("nan,0,0").is_err());
-        assert!(vec3("1e999,0,0").is_err());
-        assert!(direction("0,0,-0").is_err() && direction("w").is_err());
-        assert_eq!(direction("-z"), Ok(DVec3::NEG_Z));
-        assert_eq!(
-            (direction("y"), direction("+y")),
-            (Ok(DVec3::Y), Ok(DVec3::Y))
-        );
-    }
-
-    #[test]
-    fn turns_are_about_an_axis_by_degrees() {
-        let half = turn("0,0,2,180").expect("an axis");
-        assert_eq!(half * DVec3::X, DVec3::NEG_X);
-        let back = turn("0,1,0,-90").expect("an axis");
-        assert!((back * DVec3::X).distance(DVec3::Z) < 1e-15);
-        assert!(turn("0,0,0,90").is_err() && turn("1,2,3").is_err());
-    }
-
-    #[test]
-    fn sizes_colours_and_names() {
-        assert_eq!(size("640x480"), Ok((640, 480)));
-        assert!(size("640").is_err() && size("-1x5").is_err() && size("5x99999999999").is_err());
-        assert_eq!(colour("white"), Ok([1.0; 3]));
-        assert_eq!(colour("#fff"), Ok([1.0; 3]));
-        assert_eq!(colour("#ff0080"), Ok([1.0, 0.0, 128.0 / 255.0]));
-        assert!(colour("#ffff").is_err() && colour("#ggg").is_err() && colour("wite").is_err());
-        assert!(colour("0,0.5,1").is_ok() && colour("0,0,1.5").is_err());
-        assert!(positive("0").is_err() && positive("1e60").is_err() && positive("3").is_ok());
-        assert!(picture_path("a.PNG".into()).is_ok() && picture_path("a.exr".into()).is_ok());
-        assert!(picture_path("a.jpg".into()).is_err() && picture_path("png".into()).is_err());
-    }
-}
+mod tests;

@@ -1,100 +1,52 @@
 //! The cameras that flags mean, with their numbers and names.
 
+use std::borrow::Cow;
 use std::path::Path;
 
 use glam::DVec3;
-use rara::Camera;
 use rara::scene::Bounds;
+use rara::{Camera, Scene};
+use rara_shots::{Framing, Orbit, Outside, Visible, upright};
 
 use super::failure::Failure;
-use super::lens::{Depths, Lens, UP};
+use super::output::{self, grouped};
 use super::values;
 
 /// A camera and what its file calls it.
 #[derive(Debug, Clone)]
-pub(super) struct NamedView {
+pub struct NamedView {
     /// Its number in the file; it replaces `{}` in a picture's name.
     pub(super) number: usize,
     pub(super) name: String,
-    pub(super) camera: Camera,
+    pub camera: Camera,
 }
 
 #[derive(Debug)]
-pub(super) enum Views {
+pub enum Views {
     /// Cameras that are known before the scene is loaded.
     Given(Vec<NamedView>),
     /// A camera that the scene will place.
-    Framed(Framing),
+    Framed(Framed),
     /// An orbit round the scene that such a camera frames.
-    Round(Orbit, Framing),
-}
-
-/// So many pictures on the way round.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Orbit {
-    /// Turns; the camera goes to its right, and where they are below zero to its left.
-    pub(super) turns: f64,
-    pub(super) frames: u32,
+    Round(Orbit, Framed),
 }
 
 /// A camera that the scene places, but for what flags say of it.
-#[derive(Debug, Clone)]
-pub(super) struct Framing {
-    pub(super) up: DVec3,
-    pub(super) lens: Lens,
-    pub(super) size: (u32, u32),
-    pub(super) depths: Depths,
-    /// It stands here, and looks at the middle of what is framed.
-    pub(super) eye: Option<DVec3>,
-    /// It looks at this, from the side and the distance from which it would look at the middle.
-    pub(super) target: Option<DVec3>,
+#[derive(Debug)]
+pub struct Framed {
+    pub(super) framing: Framing,
     /// What is to be said of the direction that is up.
     pub(super) note: Option<String>,
 }
 
-impl Framing {
-    /// The camera with its lens and its axes: it looks at the middle of what is framed from the eye, if that is said, and
-    /// otherwise from the front, the right and above, with its eye anywhere.
-    pub(super) fn turned(&self, middle: DVec3) -> Result<Camera, Failure> {
-        let unit = Bounds {
-            min: DVec3::NEG_ONE,
-            max: DVec3::ONE,
-        };
-        match self.eye {
-            Some(eye) => self.lens.look((eye, middle), self.up, self.size),
-            None => {
-                let camera = self.lens.frame(&unit, self.up, self.size);
-                camera.map_err(Failure::usage)
-            }
-        }
-    }
-
-    /// The camera that looks at the middle from where it stands, moved so that it looks at the target likewise.
-    pub(super) fn aimed(&self, camera: Camera, middle: DVec3) -> Camera {
-        let forward = camera.rotation.row(2);
-        match self.target {
-            Some(target) => camera.eye(target - forward * forward.dot(middle - camera.eye)),
-            None => camera,
-        }
-    }
-
-    /// The camera that holds a box.
-    pub(super) fn boxed(&self, bounds: &Bounds) -> Result<Camera, Failure> {
-        let camera = match self.eye {
-            Some(_) => self.turned(bounds.centre())?,
-            None => self.lens.frame(bounds, self.up, self.size)?,
-        };
-        self.depths.camera(self.aimed(camera, bounds.centre()))
-    }
-
-    /// Finds errors that do not depend on the scene before it is read.
-    pub(super) fn checked(self) -> Result<Self, Failure> {
-        let eye = self.eye.unwrap_or_default();
-        let aside = self.up.normalize_or(UP).any_orthonormal_vector();
-        self.depths
-            .camera(self.turned(eye + aside * (1.0 + eye.length()))?)?;
-        Ok(self)
-    }
+/// The views of a path's cameras, which are named for it and numbered from 0.
+pub(super) fn numbered(path: &str, cameras: Vec<Camera>) -> Vec<NamedView> {
+    let view = |(number, camera)| NamedView {
+        number,
+        name: format!("{path}_{number}"),
+        camera,
+    };
+    cameras.into_iter().enumerate().map(view).collect()
 }
 
 impl Views {
@@ -103,13 +55,13 @@ impl Views {
         let (given, placed) = match self {
             Self::Given(views) => (views.as_slice(), 0),
             Self::Framed(_) => (&[][..], 1),
-            Self::Round(orbit, _) => (&[][..], orbit.frames as usize),
+            Self::Round(orbit, _) => (&[][..], orbit.frames() as usize),
         };
         given.iter().map(|view| view.number).chain(0..placed)
     }
 
     /// Refuses several cameras, where `what` needs one.
-    pub(super) fn single(self, what: &str) -> Result<Self, Failure> {
+    pub fn single(self, what: &str) -> Result<Self, Failure> {
         match self.numbers().count() {
             1 => Ok(self),
             count => Err(Failure::Usage(format!(
@@ -121,7 +73,7 @@ impl Views {
     /// The direction that is up in the world, where the scene places the camera.
     #[cfg(feature = "view")]
     pub(super) fn up(&self) -> Option<DVec3> {
-        self.framed().map(|framed| framed.up)
+        self.framed().map(|framed| framed.framing.up)
     }
 
     /// What is to be said of it.
@@ -129,12 +81,96 @@ impl Views {
         self.framed()?.note.clone()
     }
 
-    fn framed(&self) -> Option<&Framing> {
+    fn framed(&self) -> Option<&Framed> {
         match self {
             Self::Given(_) => None,
             Self::Framed(framed) | Self::Round(_, framed) => Some(framed),
         }
     }
+
+    /// The cameras, once the scene is known; says what of the scene is not in their pictures.
+    pub(super) fn in_scene(self, scene: &Scene<'_>) -> Result<Vec<NamedView>, Failure> {
+        self.note().into_iter().for_each(output::say_afterwards);
+        let is_free = self.framed().is_some_and(|one| one.framing.holds_all());
+        let views = match self {
+            Self::Given(views) => return Ok(views),
+            framed => framed.showing(&Visible::of(scene))?,
+        };
+        let first = views.first().filter(|_| is_free);
+        let outside = first.and_then(|first| outside(&Outside::of(scene, &first.camera)));
+        outside.into_iter().for_each(output::say_afterwards);
+        Ok(views)
+    }
+
+    /// The cameras, once what is visible is known.
+    pub(super) fn showing(self, visible: &Visible) -> Result<Vec<NamedView>, Failure> {
+        match self {
+            Self::Given(views) => Ok(views),
+            Self::Framed(framed) => {
+                let camera = framed.framing.camera(visible);
+                framed.one(camera.map_err(Failure::usage)?)
+            }
+            Self::Round(orbit, framed) => {
+                let cameras = framed.framing.orbit(orbit, visible);
+                let cameras = cameras.map_err(Failure::usage)?;
+                let first = cameras.first();
+                first.inspect(|camera| say_up(camera, framed.framing.up));
+                Ok(numbered("orbit", cameras))
+            }
+        }
+    }
+
+    /// The camera of a command that measures; one that frames the scene holds the box around it: the figures of the guide were
+    /// taken with it.
+    pub fn boxed(self, scene: &Scene<'_>) -> Result<Vec<NamedView>, Failure> {
+        match self {
+            Self::Framed(framed) => {
+                let note = framed.note.clone();
+                note.into_iter().for_each(output::say_afterwards);
+                framed.one(framed.framing.boxed(&Bounds::of(scene))?)
+            }
+            other => other.in_scene(scene),
+        }
+    }
+}
+
+impl Framed {
+    fn one(&self, camera: Camera) -> Result<Vec<NamedView>, Failure> {
+        say_up(&camera, self.framing.up);
+        Ok(vec![NamedView {
+            number: 0,
+            name: "framing".into(),
+            camera,
+        }])
+    }
+}
+
+/// Says what is up in the picture of a camera that looks along the direction that was to be up.
+pub(super) fn say_up(camera: &Camera, up: DVec3) {
+    let turned = upright(camera.rotation.row(2), up);
+    if turned != up {
+        output::warn_once(format!(
+            "note: the camera looks along what is up; up in the picture is {}",
+            if turned == DVec3::Z { "z" } else { "-y" }
+        ));
+    }
+}
+
+/// The note on what of a scene reaches out of a picture, if anything does.
+fn outside(counted: &Outside) -> Option<String> {
+    let &Outside { visible, outside } = counted;
+    let share = match 100.0 * outside as f64 / visible.max(1) as f64 {
+        less if less < 0.01 => Cow::from("less than 0.01 %"),
+        percent => format!("{percent:.2} %").into(),
+    };
+    (outside > 0).then(|| {
+        format!(
+            "note: {share} of the visible Gaussians, {} of {}, reach out of the picture, as strays and backgrounds do that would make \
+             the rest small; --eye or --ortho HEIGHT shows more",
+            grouped(outside),
+            grouped(visible)
+        )
+    })
 }
 
 /// The numbers of the cameras with these names that `wanted` means: a number from 0, a name that may leave out its ending, a range
@@ -168,7 +204,7 @@ pub(super) fn picked(
         Failure::Usage(format!(
             "{flag} {wanted}: {} has {}, and none of that number (from 0) or name{meant}",
             path.display(),
-            super::output::counted(names.len() as u64, "camera")
+            output::counted(names.len() as u64, "camera")
         ))
     })
 }
@@ -187,32 +223,4 @@ fn found(names: &[&str], wanted: &str) -> Option<usize> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn views_are_picked_by_number_name_stem_or_range() {
-        let names = ["a.jpg", "b/7.png", "2", "0..1", "x,y"];
-        let numbers = |wanted| picked(&names, wanted, Path::new("f"), "--view");
-        for (wanted, meant) in [
-            ("1", &[1][..]),
-            ("a.jpg", &[0]),
-            ("a", &[0]),
-            ("7", &[1]),
-            ("2", &[2]),
-            ("1..3", &[1, 2, 3]),
-            ("3..1", &[3, 2, 1]),
-            ("2 .. 2", &[2]),
-            ("2,1..2, a", &[2, 1, 2, 0]),
-            // These are names.
-            ("0..1", &[3]),
-            ("x,y", &[4]),
-        ] {
-            assert_eq!(numbers(wanted).ok().as_deref(), Some(meant), "{wanted}");
-        }
-        for none in ["9", "3..5", "..2", "1..", "1,", "0,b", "a..7"] {
-            let failure = numbers(none).expect_err(none).to_string();
-            assert!(failure.contains("f has 5 cameras"), "{none}: {failure}");
-        }
-    }
-}
+mod tests;

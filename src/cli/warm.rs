@@ -1,28 +1,28 @@
 //! `rara warm`: shaders compiled before a picture waits for them.
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use glam::DVec3;
 use rara::clip::Expression;
 use rara::scene::{Bounds, Kind, generate};
 use rara::{Aov, Camera, Clip, Error, Mode, Raster, Scene, Settings, ShFormat};
-use rara_lab::frames::fresh;
 
 use super::failure::Failure;
 use super::output::{ProgressLine, say};
 use super::session::Session;
 use super::settings::DeviceArgs;
 
-/// Compile the shaders ahead, for container images, cluster nodes and first pictures
+/// Compile the shaders in advance, for example in a container image or on a cluster node
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
   rara warm
   RARA_CACHE=/var/cache/rara rara warm --all
 
-It compiles what pictures need without a clip, cut by a plane, by a curved shape and by several shapes, in the default mode, and
-the channels of --aov. What drivers compile is kept in RARA_CACHE where that names a folder, and else in their own folders.")]
+The command compiles the shaders of the default mode for four kinds of pictures: without a clip, cut by a plane, cut by a
+curved shape, and cut by several shapes. It also compiles the shaders of the channels of --aov. Drivers store what they
+compile in the folder that the environment variable RARA_CACHE names; if it is not set, they use folders of their own.")]
 pub(super) struct Warm {
-    /// Compile what the other modes, ways to draw, and forms of spherical harmonics need too
+    /// Also compile the shaders of all other modes, --raster paths and --sh-format choices
     #[arg(long)]
     all: bool,
     #[command(flatten)]
@@ -51,7 +51,7 @@ impl Warm {
         for (done, (stored, clip, settings)) in frames.iter().enumerate() {
             progress.update(done as u64, frames.len() as u64 + 1);
             session.headless.load_as(&scene, *stored)?;
-            match fresh(&mut session.headless, &camera, clip, settings) {
+            match session.fresh(&camera, clip, settings) {
                 // A device without mesh shaders, say, has none to compile.
                 Err(Error::Device(why)) if settings.raster != Raster::Auto => {
                     say(format_args!("note: {why}"));
@@ -63,7 +63,7 @@ impl Warm {
         for text in CLIPS {
             let clip = clip(text)?;
             let frame = (&camera, &clip, &usual);
-            session.headless.channels(Aov::value_variants(), frame)?;
+            session.headless.channels(Aov::ALL, frame)?;
         }
         drop(progress);
         let (seconds, kept) = (session.first_use_ms(0.0) / 1e3, session.has_kept());
@@ -86,8 +86,8 @@ impl Warm {
             .map(|clip| (settings.precision.sh, clip.clone(), settings));
         let mut frames: Vec<_> = usual.collect();
         if self.all {
-            for mode in Mode::value_variants() {
-                for raster in Raster::value_variants() {
+            for mode in Mode::ALL {
+                for raster in Raster::ALL {
                     let settings = settings.mode(*mode).raster(*raster);
                     let of_mode = clips
                         .iter()
@@ -95,7 +95,7 @@ impl Warm {
                     frames.extend(of_mode);
                 }
             }
-            for sh in ShFormat::value_variants() {
+            for sh in ShFormat::ALL {
                 for degree in 0..=3 {
                     frames.push((*sh, clips[1].clone(), settings.sh_degree(Some(degree))));
                 }

@@ -39,6 +39,12 @@ fn constant(line: &str) -> Option<(&'static str, &str, &str)> {
     None
 }
 
+/// The names of the constants that begin like this, in their order.
+pub(crate) fn kinds<'a>(text: &'a str, prefix: &'a str) -> impl Iterator<Item = &'a str> {
+    let names = text.lines().filter_map(constant).map(|(_, name, _)| name);
+    names.filter(move |name| name.starts_with(prefix))
+}
+
 /// A Rust text of constants, `pub const NAME: f32 = 1.0;` and `pub const NAME: u32 = 1;`, in GLSL with its comments.
 pub(crate) fn limits(rust: &str) -> String {
     let mut out = String::from(
@@ -157,6 +163,13 @@ mod tests {
             constants(text),
             "/// How many.\npub const MOST: u32 = 32;\n/// `HALF` in GLSL.\npub const HALF: f32 = 1.0 / 2.0;\n"
         );
+    }
+
+    #[test]
+    fn kinds_are_the_constants_of_a_prefix() {
+        let text = "const uint OP_AND = 0u;\nconst uint SURFACE_PLANE = 0u;\nconst uint SURFACE_QUADRIC = 1u;\n";
+        let names: Vec<_> = kinds(text, "SURFACE_").collect();
+        assert_eq!(names, ["SURFACE_PLANE", "SURFACE_QUADRIC"]);
     }
 
     #[test]

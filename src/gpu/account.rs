@@ -10,9 +10,9 @@ use rara_base::error::Error;
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct NamedBytes {
-    /// Its name, which says what it is for.
+    /// The name of the memory, which says what it is for.
     pub name: String,
-    /// Its size.
+    /// The size of the memory, in bytes.
     pub bytes: u64,
 }
 

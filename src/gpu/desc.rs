@@ -84,8 +84,8 @@ pub struct AdoptDesc {
     pub memory: Option<Arc<dyn MemorySource>>,
     /// The kind of machine that pipelines are chosen for; `None` is what suits the device.
     pub shape: Option<DeviceShape>,
-    /// Whatever keeps the host's device and instance alive: it is dropped when the last of the [`Device`](super::Device)'s clones and of
-    /// what was made from them is gone. `None` where the host sees to it.
+    /// A value that keeps the host's device and instance alive. It is dropped after the last clone of the
+    /// [`Device`](super::Device) and everything that was made from them. `None` if the host keeps them alive by itself.
     pub keep_alive: Option<Arc<dyn Any + Send + Sync>>,
 }
 

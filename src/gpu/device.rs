@@ -201,8 +201,9 @@ impl Device {
         found.map(|found| found.sample_counts).unwrap_or_default()
     }
 
-    #[cfg(any(feature = "view", feature = "lab", test))]
-    pub(super) fn physical(&self) -> vk::PhysicalDevice {
+    /// The physical device.
+    #[doc(hidden)]
+    pub fn physical(&self) -> vk::PhysicalDevice {
         self.inner.physical
     }
 
@@ -292,7 +293,8 @@ impl Device {
     }
 
     /// Names an object of this device for debuggers and validation messages.
-    pub(crate) fn set_name<H: vk::Handle + Copy>(&self, object: H, name: &str) {
+    #[doc(hidden)]
+    pub fn set_name<H: vk::Handle + Copy>(&self, object: H, name: &str) {
         let Some(debug) = self.debug_utils().filter(|_| object.as_raw() != 0) else {
             return; // there is no object, as a cache need not exist
         };

@@ -37,7 +37,7 @@ pub struct Image {
 }
 
 /// Every target has one level and one layer of colour.
-pub(super) const WHOLE: vk::ImageSubresourceRange = vk::ImageSubresourceRange {
+pub const WHOLE: vk::ImageSubresourceRange = vk::ImageSubresourceRange {
     aspect_mask: vk::ImageAspectFlags::COLOR,
     base_mip_level: 0,
     level_count: 1,
@@ -175,7 +175,7 @@ impl Image {
             .new_layout(vk::ImageLayout::TRANSFER_SRC_OPTIMAL);
         // SAFETY: the caller vouches for `cmd`, and that the image is being rendered to.
         unsafe {
-            self.device.commands().end_rendering(cmd);
+            end_rendering(&self.device, cmd);
             barrier(&self.device, cmd, self.handle, to_copy);
         }
         end_label(&self.device, cmd);
@@ -224,7 +224,7 @@ impl Image {
 /// # Safety
 ///
 /// `cmd` must be recording on the device, outside rendering, and the image must outlive its execution.
-pub(super) unsafe fn barrier(
+pub unsafe fn barrier(
     device: &Device,
     cmd: vk::CommandBuffer,
     image: vk::Image,
@@ -241,7 +241,7 @@ pub(super) unsafe fn barrier(
 }
 
 /// The barrier that makes a target ready to be drawn into, whatever it held; the caller adds the uses that it waits for.
-pub(super) fn to_be_drawn() -> vk::ImageMemoryBarrier2<'static> {
+pub fn to_be_drawn() -> vk::ImageMemoryBarrier2<'static> {
     vk::ImageMemoryBarrier2::default()
         .dst_stage_mask(vk::PipelineStageFlags2::COLOR_ATTACHMENT_OUTPUT)
         .dst_access_mask(
@@ -258,7 +258,7 @@ pub(super) fn to_be_drawn() -> vk::ImageMemoryBarrier2<'static> {
 ///
 /// `cmd` must be recording on the device, outside rendering; the view is of a target of this extent, ready to be drawn
 /// into, and outlives the execution.
-pub(super) unsafe fn begin_rendering(
+pub unsafe fn begin_rendering(
     device: &Device,
     cmd: vk::CommandBuffer,
     (view, extent): (vk::ImageView, vk::Extent2D),
@@ -278,6 +278,16 @@ pub(super) unsafe fn begin_rendering(
         .color_attachments(&attachments);
     // SAFETY: the caller vouches for `cmd` and the view.
     unsafe { device.commands().begin_rendering(cmd, &info) };
+}
+
+/// Ends the rendering to a target.
+///
+/// # Safety
+///
+/// `cmd` must be recording on the device, inside the rendering of [`begin_rendering`].
+pub unsafe fn end_rendering(device: &Device, cmd: vk::CommandBuffer) {
+    // SAFETY: the caller vouches for `cmd`.
+    unsafe { device.commands().end_rendering(cmd) };
 }
 
 impl Drop for Image {

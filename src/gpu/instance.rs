@@ -1,4 +1,4 @@
-//! The Vulkan instance that headless use owns, with or without the validation layer.
+//! The Vulkan instance of those who lend none, with or without the validation layer.
 
 use std::ffi::{CStr, CString};
 use std::sync::Arc;
@@ -15,12 +15,13 @@ pub(super) const API_VERSION: u32 = vk::API_VERSION_1_3;
 
 /// An instance of our own. Dropping it destroys messenger and instance; everything made from it is destroyed first.
 pub struct Instance {
+    /// The ash instance.
     pub raw: ash::Instance,
-    pub validation: Option<Validation>,
+    pub(super) validation: Option<Validation>,
     /// True when debug labels and names are recorded, for a layer or a capture tool if there is one.
-    pub debug_utils: bool,
+    pub(super) debug_utils: bool,
     /// Keeps the loader's library open.
-    pub(super) entry: ash::Entry,
+    pub entry: ash::Entry,
 }
 
 impl Instance {

@@ -19,11 +19,11 @@ pub enum Location {
     Readback,
 }
 
-/// What a [`MemorySource`] is asked for.
+/// A request for memory to a [`MemorySource`].
 #[derive(Debug, Clone, Copy)]
 #[non_exhaustive]
 pub struct MemoryRequest<'a> {
-    /// What it is for, such as the name of a buffer.
+    /// The use of the memory, such as the name of a buffer.
     pub name: &'a str,
     /// The size, the alignment and the types that will do.
     pub requirements: vk::MemoryRequirements,
@@ -36,11 +36,11 @@ pub struct MemoryRequest<'a> {
 pub struct LentMemory {
     /// The memory.
     pub memory: vk::DeviceMemory,
-    /// Where the part begins in it, bytes; aligned as was asked for.
+    /// The offset of the part in the memory, in bytes, aligned as requested.
     pub offset: u64,
     /// The part as the host's processor sees it; null for [`Location::GpuOnly`].
     pub mapped: *mut c_void,
-    /// Whatever the source knows it by; rara hands it back.
+    /// A number by which the source recognises the memory; rara gives it back with the memory.
     pub token: usize,
 }
 

@@ -1,8 +1,8 @@
 //! Vulkan without a single Gaussian: device, memory, accesses and barriers, recording, pipelines, timing.
 //!
 //! Everything here records into a command buffer that somebody else submits. The exceptions are [`Device::headless`],
-//! [`Device::submit_and_wait`] with the uploads and downloads built on it, and a window's surface, swapchain and frames in
-//! flight.
+//! [`Device::submit_and_wait`] with the uploads and downloads built on it, and the submissions of frames
+//! in flight, as a window has them.
 //!
 //! Applications use the crate `rara`, which shows what of this is meant for them; the rest may change with any version.
 
@@ -23,10 +23,9 @@ mod failure;
 pub mod faults;
 mod features;
 mod functions;
+#[doc(hidden)]
 #[allow(missing_docs)] // no application sees it, nor the next ones
-mod image;
-#[cfg(feature = "view")]
-mod in_flight;
+pub mod image;
 #[cfg(feature = "lab")]
 mod inspection;
 #[cfg(feature = "lab")]
@@ -48,12 +47,9 @@ mod requirements;
 #[allow(missing_docs)]
 mod shader;
 mod shape;
+mod specialized;
 mod submission;
 mod submit;
-#[cfg(feature = "view")]
-mod surface;
-#[cfg(feature = "view")]
-mod swapchain;
 #[cfg(any(test, feature = "lab"))]
 #[doc(hidden)]
 pub mod testing;
@@ -87,11 +83,6 @@ pub use timer::{PassSpan, Timer, measures_dispatches};
 pub use write_only::WriteOnly;
 #[doc(hidden)]
 pub use {
-    access::Access, clock::Calibration, recorder::group_grid, shader::MAX_PARAMS, tracker::Tracker,
-};
-#[cfg(feature = "view")]
-pub use {
-    in_flight::{FRAMES, InFlight},
-    surface::{Surface, Window},
-    swapchain::Swapchain,
+    access::Access, clock::Calibration, instance::Instance, recorder::group_grid,
+    requirements::offers, shader::MAX_PARAMS, submission::Submission, tracker::Tracker,
 };

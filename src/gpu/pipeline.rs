@@ -13,6 +13,7 @@ use super::layout::Layout;
 use super::shader::Bindings;
 use super::shader::{BufferAccess, Shader};
 use super::shape::DeviceShape;
+use super::specialized::specialized;
 use rara_base::error::{Error, Result};
 
 /// Entry point of every shader.
@@ -35,10 +36,8 @@ pub struct ComputePipeline(Arc<Pipeline>);
 impl ComputePipeline {
     pub fn new(device: &Device, desc: &ComputeDesc<'_>) -> Result<Self> {
         let layout = Layout::new(device, desc.name, &[desc.shader], desc.bindings)?;
-        let constants = Constants::new(desc.constants);
-        let specialization = constants.info();
-        let module = Module::new(device, desc.shader, desc.bindings)?;
-        let mut stage = module.stage(&specialization);
+        let module = Module::new(device, desc.shader, desc.bindings, desc.constants)?;
+        let mut stage = module.stage();
         let mut size = vk::PipelineShaderStageRequiredSubgroupSizeCreateInfo::default();
         if let Some(asked) = subgroup(device).filter(|_| desc.shader.subgroups) {
             size = size.required_subgroup_size(asked);
@@ -52,7 +51,7 @@ impl ComputePipeline {
         #[cfg(feature = "lab")]
         let info = info.map(|info| info.flags(device.pipeline_flags()));
         let (raw, cache) = (device.raw(), device.pipeline_cache());
-        // SAFETY: module and layout are the device's and alive; the constants outlive the call.
+        // SAFETY: module and layout are the device's and alive.
         let made = unsafe { raw.create_compute_pipelines(cache, &info, None) };
         let made = made.map_err(|(_, result)| result);
         let inner = Pipeline::new(device, desc.name, layout, made, "vkCreateComputePipelines")?;
@@ -155,14 +154,9 @@ impl GraphicsPipeline {
                 desc.name, written.name
             );
         }
-        let constants = Constants::new(desc.constants);
-        let specialization = constants.info();
-        let front = Module::new(device, desc.front, desc.bindings)?;
-        let fragment = Module::new(device, desc.fragment, desc.bindings)?;
-        let stages = [
-            front.stage(&specialization),
-            fragment.stage(&specialization),
-        ];
+        let module = |shader| Module::new(device, shader, desc.bindings, desc.constants);
+        let (front, fragment) = (module(desc.front)?, module(desc.fragment)?);
+        let stages = [front.stage(), fragment.stage()];
 
         let into = &desc.attachments;
         let vertex_input = vk::PipelineVertexInputStateCreateInfo::default();
@@ -294,9 +288,16 @@ struct Module<'a> {
 }
 
 impl<'a> Module<'a> {
-    fn new(device: &'a Device, shader: &'a Shader, bindings: Bindings) -> Result<Self> {
-        let info = vk::ShaderModuleCreateInfo::default().code(shader.code(bindings));
-        // SAFETY: the device is alive, and the words are SPIR-V that this crate's build compiled and checked.
+    fn new(
+        device: &'a Device,
+        shader: &'a Shader,
+        bindings: Bindings,
+        constants: &[(u32, u32)],
+    ) -> Result<Self> {
+        let code = specialized(shader.code(bindings), constants);
+        let info = vk::ShaderModuleCreateInfo::default().code(&code);
+        // SAFETY: the device is alive, and the words are SPIR-V that this crate's build compiled and checked, with values
+        // in place of its constants.
         let raw = unsafe { device.raw().create_shader_module(&info, None) }
             .map_err(failed("vkCreateShaderModule"))?;
         device.set_name(raw, shader.name);
@@ -307,15 +308,11 @@ impl<'a> Module<'a> {
         })
     }
 
-    fn stage<'b>(
-        &self,
-        specialization: &'b vk::SpecializationInfo<'b>,
-    ) -> vk::PipelineShaderStageCreateInfo<'b> {
+    fn stage(&self) -> vk::PipelineShaderStageCreateInfo<'static> {
         vk::PipelineShaderStageCreateInfo::default()
             .stage(self.shader.stage)
             .module(self.raw)
             .name(MAIN)
-            .specialization_info(specialization)
     }
 }
 
@@ -323,35 +320,5 @@ impl Drop for Module<'_> {
     fn drop(&mut self) {
         // SAFETY: modules are not needed once the pipeline is made, or failed to be.
         unsafe { self.device.raw().destroy_shader_module(self.raw, None) };
-    }
-}
-
-/// Specialisation constants in Vulkan's form.
-struct Constants {
-    entries: Vec<vk::SpecializationMapEntry>,
-    data: Vec<u8>,
-}
-
-impl Constants {
-    fn new(constants: &[(u32, u32)]) -> Self {
-        let entry = |(at, (id, _)): (usize, &(u32, u32))| {
-            vk::SpecializationMapEntry::default()
-                .constant_id(*id)
-                .offset(4 * at as u32)
-                .size(4)
-        };
-        Self {
-            entries: constants.iter().enumerate().map(entry).collect(),
-            data: constants
-                .iter()
-                .flat_map(|(_, value)| value.to_ne_bytes())
-                .collect(),
-        }
-    }
-
-    fn info(&self) -> vk::SpecializationInfo<'_> {
-        vk::SpecializationInfo::default()
-            .map_entries(&self.entries)
-            .data(&self.data)
     }
 }

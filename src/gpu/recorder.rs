@@ -28,13 +28,13 @@ pub enum Groups<'a> {
 pub struct DepthImage {
     /// The image, whose level 0 is read.
     pub image: vk::Image,
-    /// Its layout at that time: `TRANSFER_SRC_OPTIMAL` or `GENERAL`.
+    /// The layout of the image when it is copied: `TRANSFER_SRC_OPTIMAL` or `GENERAL`.
     pub layout: vk::ImageLayout,
-    /// Its size, px.
+    /// The size of the image, in px.
     pub extent: vk::Extent2D,
     /// The layer to read.
     pub layer: u32,
-    /// The viewport's upper left corner in it, px.
+    /// The position of the viewport's upper left corner in the image, in px.
     pub origin: vk::Offset2D,
 }
 

@@ -84,7 +84,7 @@ impl Support {
 }
 
 /// True when an extension is among those that a device, an instance or a layer offers.
-pub(super) fn offers(extensions: &[vk::ExtensionProperties], wanted: &CStr) -> bool {
+pub fn offers(extensions: &[vk::ExtensionProperties], wanted: &CStr) -> bool {
     extensions
         .iter()
         .any(|offered| offered.extension_name_as_c_str() == Ok(wanted))

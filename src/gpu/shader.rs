@@ -2,16 +2,16 @@
 
 use ash::vk;
 
-/// How shaders reach their buffers.
+/// The way in which shaders reach their buffers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Bindings {
-    /// They are reached by device address: there is no size limit, but the validation layer cannot watch.
+    /// Buffers are reached by device address. Their size has no limit, but the validation layer cannot check accesses.
     #[default]
     Address,
-    /// They are storage buffers of descriptor set 0, pushed with each command. The validation layer sees every hazard; a
-    /// buffer may not exceed [`Support::max_storage_buffer_range`](super::Support::max_storage_buffer_range).
+    /// Buffers are storage buffers of descriptor set 0, pushed with each command. The validation layer checks every access. A
+    /// buffer may not be larger than [`Support::max_storage_buffer_range`](super::Support::max_storage_buffer_range).
     Bound,
-    /// The frame's constants are bound, and all else is reached by device address.
+    /// The constants of the frame are bound, and all other buffers are reached by device address.
     Mixed,
 }
 

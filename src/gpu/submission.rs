@@ -4,15 +4,16 @@ use ash::vk;
 
 /// A command buffer for one submission at a time, with the fence that says when it is done.
 #[derive(Default)]
-pub(super) struct Submission {
+pub struct Submission {
     pub(super) pool: vk::CommandPool,
     pub(super) cmd: vk::CommandBuffer,
-    pub(super) fence: vk::Fence,
+    /// It is signalled when the submission is done.
+    pub fence: vk::Fence,
 }
 
 impl Submission {
     /// Destroys it, which no submission uses any more.
-    pub(super) fn destroy(&self, raw: &ash::Device) {
+    pub fn destroy(&self, raw: &ash::Device) {
         // SAFETY: it is idle, and null handles are ignored.
         unsafe {
             raw.destroy_fence(self.fence, None);

@@ -10,7 +10,8 @@ use super::submission::Submission;
 use rara_base::error::Result;
 
 impl Submission {
-    pub(super) fn new(device: &Device, name: &str) -> Result<Self> {
+    /// One without commands; the name is for debuggers and validation messages.
+    pub fn new(device: &Device, name: &str) -> Result<Self> {
         let mut this = Self::default();
         match this.make(device) {
             Ok(()) => {
@@ -50,7 +51,7 @@ impl Submission {
     ///
     /// # Safety
     /// The last submission is over. `record` leaves the command buffer outside rendering.
-    pub(super) unsafe fn record<R>(
+    pub unsafe fn record<R>(
         &self,
         device: &Device,
         record: impl FnOnce(vk::CommandBuffer) -> Result<R>,
@@ -75,7 +76,7 @@ impl Submission {
     /// # Safety
     /// [`record`](Self::record) has succeeded since the last submission, the fence is unsignalled, and the semaphores are as
     /// Vulkan wants them.
-    pub(super) unsafe fn submit(
+    pub unsafe fn submit(
         &self,
         device: &Device,
         waits: &[vk::SemaphoreSubmitInfo<'_>],
@@ -149,7 +150,8 @@ impl Device {
     }
 
     /// The queue, which no other thread of ours uses meanwhile.
-    pub(super) fn lock_queue(&self) -> MutexGuard<'_, vk::Queue> {
+    #[doc(hidden)]
+    pub fn lock_queue(&self) -> MutexGuard<'_, vk::Queue> {
         let queue = self.inner.queue.lock();
         queue.unwrap_or_else(PoisonError::into_inner)
     }

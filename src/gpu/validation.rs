@@ -18,7 +18,7 @@ pub(crate) const CHECKS: [vk::ValidationFeatureEnableEXT; 1] =
 
 /// Warnings and errors of the layer, in the order they came. Any thread that calls Vulkan may add to them.
 #[derive(Debug, Default)]
-pub struct Messages(Mutex<Vec<String>>);
+pub(crate) struct Messages(Mutex<Vec<String>>);
 
 impl Messages {
     fn push(&self, message: String) {
@@ -29,8 +29,7 @@ impl Messages {
     }
 
     /// Takes everything that has been collected.
-    #[doc(hidden)]
-    pub fn drain(&self) -> Vec<String> {
+    pub(crate) fn drain(&self) -> Vec<String> {
         std::mem::take(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner))
     }
 }
@@ -50,16 +49,15 @@ pub(crate) fn messenger_info(
 }
 
 /// The messenger of an instance and the messages it collects.
-pub struct Validation {
+pub(crate) struct Validation {
     loader: ext::debug_utils::Instance,
     messenger: vk::DebugUtilsMessengerEXT,
-    pub messages: Arc<Messages>,
+    pub(crate) messages: Arc<Messages>,
 }
 
 impl Validation {
     /// Attaches a messenger to an instance with `VK_EXT_debug_utils` enabled.
-    #[doc(hidden)]
-    pub fn new(
+    pub(crate) fn new(
         entry: &ash::Entry,
         instance: &ash::Instance,
         messages: Arc<Messages>,
@@ -81,8 +79,7 @@ impl Validation {
     /// # Safety
     ///
     /// Its instance must be alive, and this must be the only call.
-    #[doc(hidden)]
-    pub unsafe fn destroy(&self) {
+    pub(crate) unsafe fn destroy(&self) {
         // SAFETY: the caller vouches for the instance and that the messenger was not destroyed before.
         unsafe {
             self.loader
@@ -191,46 +188,4 @@ unsafe fn slice<'a, T>(first: *const T, count: u32) -> &'a [T] {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn messages_say_where_and_about_what() {
-        // The innermost label comes first.
-        let labels =
-            [c"step", c"sort"].map(|name| vk::DebugUtilsLabelEXT::default().label_name(name));
-        let object = |kind, name| {
-            let mut object = vk::DebugUtilsObjectNameInfoEXT::default().object_name(name);
-            object.object_type = kind;
-            object
-        };
-        let mut nameless = object(vk::ObjectType::DEVICE, c"");
-        nameless.p_object_name = std::ptr::null();
-        let objects = [
-            object(vk::ObjectType::COMMAND_BUFFER, c"one-off"),
-            object(vk::ObjectType::BUFFER, c"splats"),
-            nameless,
-        ];
-        let data = vk::DebugUtilsMessengerCallbackDataEXT::default().message(c"a hazard");
-        let message = |data: vk::DebugUtilsMessengerCallbackDataEXT<'_>| {
-            // SAFETY: the struct was filled by its own setters.
-            unsafe { describe(&data, &[]) }
-        };
-        assert_eq!(message(data), "a hazard");
-        // SAFETY: as above.
-        let recording = unsafe { describe(&data, &["tiles".into()]) };
-        assert_eq!(recording, "in pass tiles: a hazard");
-        assert_eq!(
-            message(data.cmd_buf_labels(&labels)),
-            "in pass sort > step: a hazard"
-        );
-        assert_eq!(
-            message(data.cmd_buf_labels(&labels[1..]).objects(&objects)),
-            "in pass sort: command buffer one-off, buffer splats: a hazard"
-        );
-        assert_eq!(
-            message(vk::DebugUtilsMessengerCallbackDataEXT::default()),
-            "(no text)"
-        );
-    }
-}
+mod tests;

@@ -1,4 +1,5 @@
-//! The laboratory of rara: what measures it, and the experiments of the paper. What embeds rara compiles none of it.
+//! The laboratory of rara: what measures it, and the experiments of the paper. What embeds or draws with rara compiles none of
+//! it; the program `rara-lab` runs it.
 
 #![deny(unsafe_code)] // only what measures Vulkan itself needs it
 #![allow(missing_docs)] // it is no API
@@ -7,7 +8,6 @@ pub mod bench;
 pub mod cases;
 pub mod charts;
 pub mod frames;
-pub mod maps;
 pub mod measure;
 pub mod paper;
 pub mod run_time;

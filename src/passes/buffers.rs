@@ -1,9 +1,8 @@
-//! The frame's working memory: the buffers that its stages declare. Each has room for the worst that the scene can need, since
+//! The memory of an owner: the buffers that its stages declare. Each has room for the worst that the scene can need, since
 //! no stage reads a count on the CPU, except the tiles' lists, whose worst nobody could afford; drivers back untouched memory
 //! lazily.
 
-use crate::passes::plan::Plan;
-use crate::passes::shared;
+use crate::passes::owner::Owner;
 use crate::passes::sizes::Sizes;
 use crate::passes::storage::Storage;
 use rara_base::error::Result;
@@ -11,10 +10,10 @@ use rara_gpu::{Buffer, BufferDesc, Device};
 
 /// Everything the stages hand to each other.
 #[derive(Debug)]
-pub(crate) struct Buffers {
+pub(crate) struct Buffers<P: Owner> {
     /// By the places of the declarations; `None` where no frame needs a byte.
     buffers: Vec<Option<Buffer>>,
-    sizes: Sizes,
+    sizes: Sizes<P>,
 }
 
 /// Buffers of earlier frames that are used again, by the places of their declarations. Those that are not are dropped, and go
@@ -22,10 +21,10 @@ pub(crate) struct Buffers {
 #[derive(Debug, Default)]
 pub(crate) struct Spare(Vec<Option<Buffer>>);
 
-impl Buffers {
+impl<P: Owner> Buffers<P> {
     /// Allocates for a plan, in these sizes, what the spare buffers do not have.
-    pub(crate) fn new(device: &Device, plan: &Plan, sizes: Sizes, spare: &Spare) -> Result<Self> {
-        let buffer = |((storage, size), spare): ((&Storage, u64), Option<&Buffer>)| match spare {
+    pub(crate) fn new(device: &Device, plan: &P, sizes: Sizes<P>, spare: &Spare) -> Result<Self> {
+        let buffer = |((storage, size), spare): ((&Storage<P>, u64), Option<&Buffer>)| match spare {
             _ if size == 0 => Ok(None),
             Some(buffer) => Ok(Some(buffer.clone())),
             None => {
@@ -44,16 +43,16 @@ impl Buffers {
         })
     }
 
-    pub(crate) fn get(&self, storage: &Storage) -> &Buffer {
-        let at = |storage: &Storage| self.buffers[storage.place()].as_ref();
-        let buffer = at(storage).or_else(|| at(&shared::MEMORY.empty));
-        buffer.expect("every frame has the empty buffer")
+    pub(crate) fn get(&self, storage: &Storage<P>) -> &Buffer {
+        let at = |storage: &Storage<P>| self.buffers[storage.place()].as_ref();
+        let buffer = at(storage).or_else(|| at(P::empty()));
+        buffer.expect("every owner has its empty buffer")
     }
 
     /// The buffers that may be used again in these sizes, and where a plan wants them. `fits` is given their bytes and those
     /// that are needed.
-    pub(crate) fn spare(&self, plan: &Plan, sizes: &Sizes, fits: fn(u64, u64) -> bool) -> Spare {
-        let spare = |(buffer, (storage, size)): (&Option<Buffer>, (&Storage, u64))| {
+    pub(crate) fn spare(&self, plan: &P, sizes: &Sizes<P>, fits: fn(u64, u64) -> bool) -> Spare {
+        let spare = |(buffer, (storage, size)): (&Option<Buffer>, (&Storage<P>, u64))| {
             let location = (storage.location)(plan);
             let serves = |b: &&Buffer| b.location() == location && fits(b.size(), rounded(size));
             buffer.as_ref().filter(|_| size > 0).filter(serves).cloned()
@@ -68,11 +67,11 @@ impl Buffers {
     }
 
     /// True when frames of these sizes fit into what is allocated.
-    pub(crate) fn fit(&self, need: &Sizes) -> bool {
+    pub(crate) fn fit(&self, need: &Sizes<P>) -> bool {
         self.sizes.hold(need)
     }
 
-    pub(crate) fn sizes(&self) -> &Sizes {
+    pub(crate) fn sizes(&self) -> &Sizes<P> {
         &self.sizes
     }
 
@@ -88,7 +87,7 @@ impl Spare {
     }
 
     /// The bytes that have to be allocated beside them, without what alignment adds.
-    pub(crate) fn missing(&self, sizes: &Sizes) -> u64 {
+    pub(crate) fn missing<P: Owner>(&self, sizes: &Sizes<P>) -> u64 {
         let pairs = self.iter().zip(sizes.all());
         let missing = pairs.filter(|(spare, _)| spare.is_none());
         missing.map(|(_, (_, size))| rounded(size)).sum()

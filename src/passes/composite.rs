@@ -4,8 +4,8 @@ use std::mem::offset_of;
 
 use crate::passes::bin::lists;
 use crate::passes::buffers::Buffers;
+use crate::passes::eye_plan::EyePlan;
 use crate::passes::pipelines::{Draw, Pipelines};
-use crate::passes::plan::Plan;
 use crate::passes::shaders::composite;
 use crate::passes::stage::Targets;
 use crate::passes::storage::buffers;
@@ -15,7 +15,7 @@ use rara_gpu::Drawer;
 use rara_scene::settings::Show;
 
 /// The draw of the tiles' picture, in the light of the target where that is another and colours are shown.
-pub(crate) fn draw(plan: &Plan, targets: Targets) -> Draw<composite::Program> {
+pub(crate) fn draw(plan: &EyePlan, targets: Targets) -> Draw<composite::Program> {
     let shows_colours = matches!(plan.way.show, Show::Colour | Show::Weight);
     let converts = shows_colours && targets.convert(plan.way.show);
     let constants = composite::Constants {
@@ -31,7 +31,7 @@ pub(crate) fn draw(plan: &Plan, targets: Targets) -> Draw<composite::Program> {
 pub(crate) fn record(
     drawer: &mut Drawer<'_>,
     pipelines: &Pipelines,
-    (plan, b): (&Plan, &Buffers),
+    (plan, b): (&EyePlan, &Buffers<EyePlan>),
     targets: Targets,
     origin: [f32; 2],
 ) {

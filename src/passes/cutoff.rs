@@ -1,14 +1,15 @@
 //! Stage `cutoff`, one invocation a cutoff Gaussian, writes the cutoff record, from which the fragment stage weights it.
 
+use crate::passes::eye_plan::EyePlan;
 use crate::passes::recording::{Recording, counted};
 use crate::passes::shaders::cutoff;
 use crate::passes::shared::{self, SCENE};
 use crate::passes::stage::Stage;
 use crate::passes::storage::{buffers, memory};
-use crate::passes::{block_list, compact};
+use crate::passes::{clip, compact};
 
 /// The stage in a frame that finds its view anew.
-pub(crate) static STAGE: Stage = Stage {
+pub(crate) static STAGE: Stage<EyePlan> = Stage {
     name: "cutoff",
     needed: |plan| plan.finds_view() && plan.view_is_cut(),
     missed: |plan| !plan.reclips(),
@@ -17,26 +18,29 @@ pub(crate) static STAGE: Stage = Stage {
 };
 
 /// The same in a reclipped frame, after stage `reclip`.
-pub(crate) static STAGE_OF_RECLIP: Stage = Stage {
+pub(crate) static STAGE_OF_RECLIP: Stage<EyePlan> = Stage {
     name: "cutoff",
-    needed: |plan| plan.reclips() && plan.cuts(),
+    needed: |plan| plan.reclips() && plan.cut.cuts(),
     missed: |plan| plan.reclips(),
     memory: &[],
     record,
 };
 
-memory! {
-    cut_records: |plan| match plan.cuts() {
-        true => 16 * u64::from(plan.data.weight.cut_stride) * plan.gaussians(),
+memory! { EyePlan:
+    cut_records: |plan| match plan.cut.cuts() {
+        true => {
+            let weight = plan.data.weight;
+            16 * u64::from(weight.cut_stride) * (plan.gaussians() + u64::from(weight.long_strides))
+        }
         false => 0,
     };
 }
 
-fn record(recording: &mut Recording<'_, '_>) {
+fn record(recording: &mut Recording<'_, '_, EyePlan>) {
     let buffers = buffers!(cutoff {
-        shared::MEMORY => [frame, surfaces, counts],
+        shared::MEMORY => [frame, counts],
         SCENE => [gaussians],
-        block_list::MEMORY => [shortlists],
+        clip::MEMORY => [surfaces, shortlists],
         compact::MEMORY => [cutoffs],
         MEMORY => [cut_records],
     });

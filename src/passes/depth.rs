@@ -4,8 +4,8 @@
 use std::mem::offset_of;
 
 use crate::passes::buffers::Buffers;
+use crate::passes::eye_plan::EyePlan;
 use crate::passes::pipelines::{Draw, Pipelines};
-use crate::passes::plan::Plan;
 use crate::passes::recording::{Recording, counted};
 use crate::passes::shaders::{depth, splat_depth};
 use crate::passes::shared::{self, SCENE};
@@ -13,13 +13,13 @@ use crate::passes::stage::Stage;
 use crate::passes::storage::{buffers, memory};
 use crate::passes::weight::Weight;
 use crate::passes::work::Work;
-use crate::passes::{block_list, compact, cutoff, project, sort};
+use crate::passes::{clip, compact, cutoff, project, sort};
 use crate::types::{FrameCounts, SplatDepth};
 use rara_gpu::{Attachments, Drawer};
 use rara_scene::depth::DepthMap;
 
 /// The splats' depths.
-pub(crate) static STAGE: Stage = Stage {
+pub(crate) static STAGE: Stage<EyePlan> = Stage {
     name: "depth",
     needed: |plan| plan.way.expects_depth && plan.work != Work::Draw,
     missed: |_| false,
@@ -27,23 +27,23 @@ pub(crate) static STAGE: Stage = Stage {
     record,
 };
 
-memory! {
+memory! { EyePlan:
     depths: |plan| expected(plan, plan.gaussians() * size_of::<SplatDepth>() as u64);
     /// The indirect draw of a quad a splat.
     depth_draw: |plan| expected(plan, 16);
 }
 
 /// So many bytes where depths are expected.
-fn expected(plan: &Plan, bytes: u64) -> u64 {
+fn expected(plan: &EyePlan, bytes: u64) -> u64 {
     if plan.way.expects_depth { bytes } else { 0 }
 }
 
-fn record(recording: &mut Recording<'_, '_>) {
+fn record(recording: &mut Recording<'_, '_, EyePlan>) {
     let buffers = buffers!(depth {
-        shared::MEMORY => [frame, surfaces, counts],
+        shared::MEMORY => [frame, counts],
         SCENE => [gaussians],
         compact::MEMORY => [splat_gaussians],
-        block_list::MEMORY => [shortlists],
+        clip::MEMORY => [surfaces, shortlists],
         MEMORY => [depths],
     });
     recording.dispatch(buffers, (), counted!(project_groups));
@@ -60,7 +60,7 @@ fn record(recording: &mut Recording<'_, '_>) {
 }
 
 /// The draw of the depths.
-pub(crate) fn draw(plan: &Plan, attachments: Attachments) -> Draw<splat_depth::Program> {
+pub(crate) fn draw(plan: &EyePlan, attachments: Attachments) -> Draw<splat_depth::Program> {
     let depth = attachments.depth.is_some();
     let weight = Weight::from_plan(plan);
     let constants = splat_depth::Constants {
@@ -68,6 +68,7 @@ pub(crate) fn draw(plan: &Plan, attachments: Attachments) -> Draw<splat_depth::P
         clip_mode: weight.mode,
         several: weight.several,
         combined: weight.combined,
+        many: weight.many,
         decay: weight.decay,
         miss: weight.miss,
         phi_form: weight.phi,
@@ -82,7 +83,7 @@ pub(crate) fn draw(plan: &Plan, attachments: Attachments) -> Draw<splat_depth::P
 pub(crate) fn record_draw(
     drawer: &mut Drawer<'_>,
     pipelines: &Pipelines,
-    (plan, b): (&Plan, &Buffers),
+    (plan, b): (&EyePlan, &Buffers<EyePlan>),
     attachments: Attachments,
     origin: [f32; 2],
     (map, unit): (Option<DepthMap>, f64),
@@ -100,7 +101,7 @@ pub(crate) fn record_draw(
         principal_point: plan.principal_point(origin),
         depth_offset,
         depth_scale,
-        sigma: plan.data.region.sigma,
+        sigma: plan.cut.data.region.sigma,
         cut_stride: plan.data.weight.cut_stride,
         alpha_max: plan.data.tiles.alpha_max,
         unit: unit as f32,

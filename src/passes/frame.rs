@@ -3,11 +3,16 @@
 use std::sync::LazyLock;
 
 use ash::vk;
+use bytemuck::{bytes_of, cast_slice};
 use smallvec::SmallVec;
 
+use crate::passes::buffers::Buffers;
+use crate::passes::cut_plan::CutPlan;
+use crate::passes::eye_plan::EyePlan;
+use crate::passes::owner::Owner;
 use crate::passes::pipelines::PipelineKey;
-use crate::passes::plan::Plan;
-use crate::passes::recording::{Recording, Resources};
+use crate::passes::recording::Recording;
+use crate::passes::resources::{CutName, CutResources, EyeName, EyeResources};
 use crate::passes::sizes::Sizes;
 use crate::passes::stage::{Stage, Targets};
 use crate::passes::storage::Storage;
@@ -16,16 +21,18 @@ use crate::passes::{
     bin, blocks, classify, clip, compact, composite, cutoff, depth, project, reclip, shared, sort,
     splat, tiles,
 };
+use crate::types::{FrameData, LayerData};
 use rara_gpu::{Buffer, Recorder};
 
-/// The stages whose results are the same for each eye. They come before those of an eye.
-static OF_SCENE: [&Stage; 1] = [
+/// The stages of a cut. They come before those of the eyes that see it.
+static OF_CUT: [&Stage<CutPlan>; 1] = [
     // Finds on which side of the clip each block of Gaussians lies, and each Gaussian of the blocks that it cuts.
     &clip::STAGE,
 ];
 
-/// The stages that see with an eye.
-static OF_VIEW: [&Stage; 12] = [
+/// The stages of an eye. Nothing waits or is read back in between; each stage's work follows from what the earlier ones left on
+/// the device.
+static OF_EYE: [&Stage<EyePlan>; 12] = [
     // Finds which blocks are in view.
     &blocks::STAGE,
     // Finds which Gaussians are in view, in the blocks that are so in part.
@@ -52,54 +59,111 @@ static OF_VIEW: [&Stage; 12] = [
     &depth::STAGE,
 ];
 
-/// All stages in the order in which a frame has them. Nothing waits or is read back in between; each stage's work follows
-/// from what the earlier ones left on the device.
-fn stages() -> impl Iterator<Item = &'static Stage> {
-    OF_SCENE.iter().chain(&OF_VIEW).copied()
-}
-
 /// The name of the draw, the last step, which a frame does without where the tiles' picture is the picture.
 pub(crate) const DRAW: &str = "splat";
 
 /// Bytes of the constants of a frame with few layers, for which recording takes no memory.
 const FEW_LAYERS: usize = 4096;
 
-/// The buffers of all stages.
-static MEMORY: LazyLock<Vec<&'static Storage>> = LazyLock::new(|| {
-    let of_stages = stages().flat_map(|stage| stage.memory);
-    let all: Vec<_> = [shared::STORAGES]
-        .iter()
-        .chain(of_stages)
-        .flat_map(|storages| storages.iter().copied())
-        .collect();
-    Storage::number(&all);
-    all
-});
+impl Owner for CutPlan {
+    type Name = CutName;
 
-/// Records everything up to the draw. `copied` is the rectangle of the host's depth under the picture; `readback` gets a copy
-/// of the counts for the host.
+    fn storages() -> &'static [&'static Storage<Self>] {
+        static ALL: LazyLock<Vec<&Storage<CutPlan>>> =
+            LazyLock::new(|| Storage::numbered(OF_CUT.iter().flat_map(|stage| stage.memory)));
+        &ALL
+    }
+
+    fn empty() -> &'static Storage<Self> {
+        &clip::MEMORY.empty
+    }
+
+    fn scene_size(&self) -> [u64; 2] {
+        [self.gaussians(), self.blocks()]
+    }
+}
+
+impl Owner for EyePlan {
+    type Name = EyeName;
+
+    fn storages() -> &'static [&'static Storage<Self>] {
+        static ALL: LazyLock<Vec<&Storage<EyePlan>>> = LazyLock::new(|| {
+            let of_stages = OF_EYE.iter().flat_map(|stage| stage.memory);
+            Storage::numbered([shared::STORAGES].iter().chain(of_stages))
+        });
+        &ALL
+    }
+
+    fn empty() -> &'static Storage<Self> {
+        &shared::MEMORY.empty
+    }
+
+    fn scene_size(&self) -> [u64; 2] {
+        self.cut.scene_size()
+    }
+}
+
+/// Writes the surfaces of a cut, which the stages of its eyes read too, and, for the stage that finds sides, its constants.
+fn write_cut(plan: &CutPlan, recorder: &mut Recorder<'_>, buffers: &Buffers<CutPlan>) {
+    let memory = &clip::MEMORY;
+    if plan.finds_sides {
+        let mut constants = SmallVec::<[u8; FEW_LAYERS]>::from(bytes_of(&plan.data));
+        constants.extend_from_slice(cast_slice(plan.layers.layers()));
+        recorder.update(buffers.get(&memory.cut), 0, &constants);
+    }
+    if plan.clips() {
+        let surfaces = cast_slice(plan.layers.surfaces());
+        recorder.update(buffers.get(&memory.surfaces), 0, surfaces);
+    }
+}
+
+/// Writes the constants of a frame.
+fn write_frame(plan: &EyePlan, recorder: &mut Recorder<'_>, frame: &Buffer) {
+    let data = FrameData {
+        cut: plan.cut.data,
+        eye: plan.data,
+    };
+    // By one command, since two into one buffer would wait for each other.
+    let mut constants = SmallVec::<[u8; FEW_LAYERS]>::from(bytes_of(&data));
+    for (&cut, &view) in plan.cut.layers.layers().iter().zip(plan.views.iter()) {
+        constants.extend_from_slice(bytes_of(&LayerData { cut, view }));
+    }
+    recorder.update(frame, 0, &constants);
+}
+
+/// Records a cut by itself, for all eyes that will see it.
+pub(crate) fn record_cut(plan: &CutPlan, recorder: &mut Recorder<'_>, resources: CutResources<'_>) {
+    recorder.label("cut", |r| write_cut(plan, r, resources.buffers));
+    record_stages(&mut Recording::new(plan, recorder, &resources), &OF_CUT);
+}
+
+/// Records everything up to the draw. The frame's cut is recorded with it where that is its own. `readback` gets a copy of the
+/// counts for the host.
 pub(crate) fn record(
-    plan: &Plan,
+    plan: &EyePlan,
     recorder: &mut Recorder<'_>,
-    resources: Resources<'_>,
-    copied: vk::Rect2D,
+    resources: EyeResources<'_>,
+    owns_cut: bool,
     readback: &Buffer,
 ) {
     let b = resources.buffers;
     let shared = &shared::MEMORY;
-    let [frame, surfaces, counts] =
-        [&shared.frame, &shared.surfaces, &shared.counts].map(|s| b.get(s));
+    let [frame, counts] = [&shared.frame, &shared.counts].map(|s| b.get(s));
     if plan.work != Work::Draw {
         recorder.label("frame", |r| {
-            let (layers, of_layers) = (plan.layers.layers(), plan.layers.surfaces());
-            // By one command, since two into one buffer would wait for each other.
-            let mut constants = SmallVec::<[u8; FEW_LAYERS]>::from(bytemuck::bytes_of(&plan.data));
-            constants.extend_from_slice(bytemuck::cast_slice(layers));
-            r.update(frame, 0, &constants);
-            r.update(surfaces, 0, bytemuck::cast_slice(of_layers));
+            if owns_cut {
+                write_cut(&plan.cut, r, resources.cut.buffers);
+            }
+            write_frame(plan, r, frame);
         });
     }
-    record_stages(&mut Recording::new(plan, recorder, resources, copied));
+    if owns_cut {
+        record_stages(
+            &mut Recording::new(&plan.cut, recorder, &resources.cut),
+            &OF_CUT,
+        );
+    }
+    record_stages(&mut Recording::new(plan, recorder, &resources), &OF_EYE);
     if plan.is_tiled() {
         let picture =
             [&tiles::MEMORY.tile_picture, &bin::lists::MEMORY.tile_begins].map(|s| b.get(s));
@@ -128,14 +192,14 @@ pub(crate) fn record(
     recorder.ready_to_draw(&[frame, counts, splats, quads, order, cut_records]);
 }
 
-fn record_stages(recording: &mut Recording<'_, '_>) {
+fn record_stages<P: Owner>(recording: &mut Recording<'_, '_, P>, stages: &[&Stage<P>]) {
     let plan = recording.plan;
-    for stage in stages().filter(|stage| (stage.needed)(plan)) {
+    for stage in stages.iter().filter(|stage| (stage.needed)(plan)) {
         recording.stage(stage.name, stage.record);
     }
 }
 
-impl Sizes {
+impl Sizes<EyePlan> {
     /// True when a picture's lists and pixels have so much room too.
     pub(crate) fn hold_tiles_of(&self, need: &Self) -> bool {
         let picture = [&bin::lists::MEMORY.tile_begins, &tiles::MEMORY.tile_picture];
@@ -143,16 +207,23 @@ impl Sizes {
     }
 }
 
-impl Plan {
-    /// The bytes of all buffers of the frame.
-    pub(crate) fn sizes(&self) -> Sizes {
-        Sizes::new(&MEMORY, self)
+impl CutPlan {
+    /// The pipelines of its stages.
+    pub(crate) fn pipelines(&self, need: &mut dyn FnMut(PipelineKey)) {
+        record_stages(&mut Recording::dry(self, need), &OF_CUT);
     }
 
+    /// The stages that the cut does not need.
+    fn skipped(&self) -> impl Iterator<Item = &'static str> {
+        skipped(&OF_CUT, self, self.gaussians() == 0)
+    }
+}
+
+impl EyePlan {
     /// The pipelines of the whole frame.
     pub(crate) fn pipelines(&self, targets: Targets, need: &mut dyn FnMut(PipelineKey)) {
-        let mut recording = Recording::dry(self, need);
-        record_stages(&mut recording);
+        self.cut.pipelines(need);
+        record_stages(&mut Recording::dry(self, need), &OF_EYE);
         if self.is_drawn {
             need(splat::draw(self, targets.colour).key());
         }
@@ -167,9 +238,19 @@ impl Plan {
     /// The stages that this frame does not need, among those of a whole one.
     pub(crate) fn skipped(&self) -> Vec<&'static str> {
         let is_empty = self.gaussians() == 0;
-        let missed = |stage: &&Stage| (stage.missed)(self) && (is_empty || !(stage.needed)(self));
-        let mut skipped: Vec<_> = stages().filter(missed).map(|stage| stage.name).collect();
-        skipped.extend((is_empty || !self.is_drawn).then_some(DRAW));
-        skipped
+        let of_eye = skipped(&OF_EYE, self, is_empty);
+        let draw = (is_empty || !self.is_drawn).then_some(DRAW);
+        self.cut.skipped().chain(of_eye).chain(draw).collect()
     }
+}
+
+/// The stages, of these, that a plan reports as skipped.
+fn skipped<P: Owner>(
+    stages: &[&Stage<P>],
+    plan: &P,
+    is_empty: bool,
+) -> impl Iterator<Item = &'static str> {
+    let missed =
+        move |stage: &&&Stage<P>| (stage.missed)(plan) && (is_empty || !(stage.needed)(plan));
+    stages.iter().filter(missed).map(|stage| stage.name)
 }

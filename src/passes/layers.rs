@@ -1,5 +1,6 @@
-//! The layers of a frame as the shaders read them: where each has the camera, how much of it shows, and what is kept of it.
+//! The layers of a scene as the shaders read them: how much of each shows, what is kept of it, and where it has the camera.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use glam::Vec3;
@@ -7,32 +8,31 @@ use glam::Vec3;
 use crate::passes::scene_layer::SceneLayer;
 use crate::passes::view::layer_view;
 use crate::passes::{region, work};
-use crate::types::{self, LayerContent, LayerData, RegionData, SurfaceData};
+use crate::types::{self, CutLayer, LayerContent, LayerRegion, LayerView, RegionData, SurfaceData};
 use rara_base::error::Result;
 use rara_base::limits;
 use rara_scene::camera::Camera;
 use rara_scene::clip::Clip;
 
-/// The layers and their surfaces. A copy has the same ones.
+/// The layers of a cut and their surfaces. A copy has the same ones.
 #[derive(Debug, Clone)]
-pub(crate) struct Layers {
-    lists: Arc<(Vec<LayerData>, Vec<SurfaceData>)>,
+pub(crate) struct CutLayers {
+    lists: Arc<(Vec<CutLayer>, Vec<SurfaceData>)>,
 }
 
-impl Layers {
-    /// The layers of a scene. Camera and clip are in its space; `region` follows from clip, camera and settings. An error is
-    /// that of the camera's own planes.
+impl CutLayers {
+    /// The layers of a scene. The clip and the camera whose own planes cut too, if there is one, are in its space; `region`
+    /// follows from them and the settings. An error is that of the camera's planes.
     pub(super) fn new(
         scene: &[SceneLayer],
-        camera: &Camera,
+        camera: Option<&Camera>,
         clip: &Clip,
         region: &RegionData,
     ) -> Result<Self> {
         let has_region = region.mode != types::MODE_NONE;
-        let (mut layers, mut surfaces) = (Vec::<LayerData>::with_capacity(scene.len()), Vec::new());
+        let (mut layers, mut surfaces) = (Vec::<CutLayer>::with_capacity(scene.len()), Vec::new());
         for (index, layer) in scene.iter().enumerate() {
-            // Nobody asks for a hidden layer's view and region: no frame is computed anew where only they change.
-            let mut data = LayerData {
+            let mut data = CutLayer {
                 content: LayerContent {
                     first_block: layer.first_block,
                     gaussian_end: layer.gaussian_end(),
@@ -44,10 +44,10 @@ impl Layers {
                 },
                 ..bytemuck::Zeroable::zeroed()
             };
+            // Nobody asks for a hidden layer's region: no cut is found anew where only that changes.
             if layer.is_visible() {
-                let placement = &layer.placement();
-                data.views = [layer_view(&camera.in_scene(placement), placement.scale())];
-                let clip = camera.sees_of(layer.clip().unwrap_or(clip))?;
+                let clip = layer.clip().unwrap_or(clip);
+                let clip = camera.map_or(Ok(Cow::Borrowed(clip)), |camera| camera.sees_of(clip))?;
                 // Quadrics are packed relative to a point among the layer's own centres.
                 let is_anchored_alike =
                     |other: &SceneLayer| !clip.is_general() || other.corners == layer.corners;
@@ -58,7 +58,8 @@ impl Layers {
                     data.region.op = region::op(&clip);
                     data.region.first_surface = surfaces.len() as u32;
                     let corners = layer.corners.map(|corner| corner.as_dvec3());
-                    surfaces.extend(region::surfaces(&clip.in_scene(placement), corners));
+                    let of_layer = clip.in_scene(&layer.placement());
+                    surfaces.extend(region::surfaces(&of_layer, corners));
                     data.region.surface_count = surfaces.len() as u32 - data.region.first_surface;
                     data.region.combined = clip.is_general().into();
                 }
@@ -71,7 +72,7 @@ impl Layers {
     }
 
     /// The layers, in the scene's order.
-    pub(crate) fn layers(&self) -> &[LayerData] {
+    pub(crate) fn layers(&self) -> &[CutLayer] {
         &self.lists.0
     }
 
@@ -86,16 +87,31 @@ impl Layers {
         counts.max().unwrap_or(0)
     }
 
-    /// The most vectors that the surfaces of a cutoff record take.
-    pub(crate) fn most_record_vectors(&self) -> u32 {
-        let vectors = self
-            .layers()
-            .iter()
-            .map(|layer| match layer.region.combined {
-                0 => layer.region.surface_count,
-                _ => types::ENTRY_VECTORS * layer.region.surface_count.min(limits::MAX_CUTTING),
-            });
-        vectors.max().unwrap_or(0)
+    /// The most vectors that the surfaces of a cutoff record and of a long record take.
+    pub(crate) fn most_record_vectors(&self) -> [u32; 2] {
+        let vectors = self.layers().iter().map(|layer| {
+            let LayerRegion {
+                combined,
+                surface_count,
+                ..
+            } = layer.region;
+            let (each, room) = match combined {
+                0 => (1, limits::RECORD_PLANES),
+                _ => (types::ENTRY_VECTORS, limits::RECORD_SURFACES),
+            };
+            [each * surface_count.min(room), each * surface_count]
+        });
+        vectors.fold([0; 2], |[a, b], [c, d]| [a.max(c), b.max(d)])
+    }
+
+    /// True when more than one surface may cut a splat.
+    pub(crate) fn are_several(&self) -> bool {
+        self.most_surfaces() > 1
+    }
+
+    /// True when more than `RECORD_SURFACES` may cut a splat.
+    pub(crate) fn are_many(&self) -> bool {
+        self.most_surfaces() > limits::RECORD_SURFACES
     }
 
     /// True when splats of a layer are weighed as combinations of surfaces that may bend.
@@ -108,11 +124,6 @@ impl Layers {
         self.are_like(other, |layer| layer.content)
     }
 
-    /// True when other layers have the camera where these have it.
-    pub(super) fn see_like(&self, other: &Self) -> bool {
-        self.are_like(other, |layer| layer.views)
-    }
-
     /// True when the same is kept of other layers.
     pub(super) fn keep_like(&self, other: &Self) -> bool {
         self.are_like(other, |layer| layer.region)
@@ -120,11 +131,24 @@ impl Layers {
                 == bytemuck::cast_slice::<_, u8>(other.surfaces())
     }
 
-    fn are_like<T: bytemuck::NoUninit>(&self, other: &Self, part: fn(&LayerData) -> T) -> bool {
+    fn are_like<T: bytemuck::NoUninit>(&self, other: &Self, part: fn(&CutLayer) -> T) -> bool {
         let (ours, theirs) = (self.layers(), other.layers());
         let mut pairs = ours.iter().zip(theirs);
         ours.len() == theirs.len() && pairs.all(|(a, b)| work::same(&part(a), &part(b)))
     }
+}
+
+/// Where each layer has the camera, which is in the scene's space. Nobody asks for a hidden layer's view: no frame is computed
+/// anew where only that changes.
+pub(super) fn views(scene: &[SceneLayer], camera: &Camera) -> Vec<LayerView> {
+    let view = |layer: &SceneLayer| {
+        let placement = &layer.placement();
+        match layer.is_visible() {
+            true => layer_view(&camera.in_scene(placement), placement.scale()),
+            false => bytemuck::Zeroable::zeroed(),
+        }
+    };
+    scene.iter().map(view).collect()
 }
 
 /// The numbers that the depth keys take from each layer: the camera in its space, the box around its centres, and the

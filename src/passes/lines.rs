@@ -1,4 +1,4 @@
-//! Draws lines over a finished picture, all in one draw. No frame that is only rendered has this.
+//! Draws lines over a finished picture, all in one draw, as windows do. No frame that is only rendered has this.
 
 use bytemuck::{Pod, Zeroable};
 
@@ -10,13 +10,13 @@ use rara_gpu::{Attachments, Bindings, Buffer, BufferDesc, Device, Drawer, Locati
 /// A line in the picture, as `glsl/lines.vert` reads it.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
-pub(crate) struct PictureLine {
+pub struct PictureLine {
     /// x and y of one end, and of the other, px.
-    pub(crate) ends: [f32; 4],
+    pub ends: [f32; 4],
     /// Red, green and blue.
-    pub(crate) colour: [f32; 3],
+    pub colour: [f32; 3],
     /// Half its width, px.
-    pub(crate) radius: f32,
+    pub radius: f32,
 }
 
 /// Bytes of the draw's own command, which stands before the lines.
@@ -24,7 +24,7 @@ const COMMAND: usize = 16;
 
 /// The lines of each frame in flight, and the pipeline that draws them.
 #[derive(Debug)]
-pub(crate) struct Lines {
+pub struct Lines {
     pipelines: Pipelines,
     /// A buffer a frame in flight, as large as the most lines so far.
     buffers: Vec<Option<Buffer>>,
@@ -32,7 +32,7 @@ pub(crate) struct Lines {
 
 impl Lines {
     /// No lines yet, for so many frames in flight.
-    pub(crate) fn new(bindings: Bindings, frames: usize) -> Self {
+    pub fn new(bindings: Bindings, frames: usize) -> Self {
         Self {
             pipelines: Pipelines::new(bindings),
             buffers: (0..frames).map(|_| None).collect(),
@@ -43,7 +43,7 @@ impl Lines {
     ///
     /// # Errors
     /// [`Error::Memory`](crate::Error::Memory) where there is no room for them, and what the pipeline's compilation reports.
-    pub(crate) fn write(
+    pub fn write(
         &mut self,
         device: &Device,
         frame: usize,
@@ -74,8 +74,9 @@ impl Lines {
         Ok(())
     }
 
-    /// Draws the lines that were written for a frame into a picture of this size.
-    pub(crate) fn record(
+    /// Draws the lines that were written for a frame into a picture of this size, with the attachments that they were written
+    /// for.
+    pub fn record(
         &self,
         drawer: &mut Drawer<'_>,
         frame: usize,

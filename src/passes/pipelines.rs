@@ -8,7 +8,6 @@ use std::time::Instant;
 
 use ash::vk;
 
-use crate::passes::plan::Plan;
 use crate::passes::shaders::{
     BufferList, BufferSet, Compute, ConstantList, ConstantSet, Interface,
 };
@@ -48,12 +47,12 @@ impl Hash for Identity {
 }
 
 /// Constants that follow from a plan.
-pub(crate) trait FromPlan {
-    fn from_plan(plan: &Plan) -> Self;
+pub(crate) trait FromPlan<P> {
+    fn from_plan(plan: &P) -> Self;
 }
 
-impl FromPlan for () {
-    fn from_plan(_: &Plan) {}
+impl<P> FromPlan<P> for () {
+    fn from_plan(_: &P) {}
 }
 
 /// A compute pipeline that a stage dispatches: a shader of a program, with constants.
@@ -84,10 +83,10 @@ impl<P: Interface> Pipeline<P> {
     }
 
     /// The pipeline that a plan makes of a program.
-    pub(crate) fn from_plan(plan: &Plan) -> Self
+    pub(crate) fn from_plan<O>(plan: &O) -> Self
     where
         P: Compute,
-        P::Constants: FromPlan,
+        P::Constants: FromPlan<O>,
     {
         Self::new(P::SHADER, P::Constants::from_plan(plan))
     }

@@ -1,8 +1,8 @@
 //! Stage `project`, one invocation a splat, computes conic, colour and depth key, the mask of tiles and, where it is
 //! drawn as one, the quad.
 
+use crate::passes::eye_plan::EyePlan;
 use crate::passes::pipelines::FromPlan;
-use crate::passes::plan::Plan;
 use crate::passes::recording::{Recording, counted};
 use crate::passes::shaders::project;
 use crate::passes::shared::{self, SCENE};
@@ -14,13 +14,13 @@ use rara_base::limits;
 use rara_gpu::DeviceShape;
 use rara_scene::precision::ShFormat;
 
-pub(crate) static STAGE: Stage = Stage::when_finding_view("project", &[STORAGES], record);
+pub(crate) static STAGE: Stage<EyePlan> = Stage::when_finding_view("project", &[STORAGES], record);
 
-memory! {
+memory! { EyePlan:
     /// As they lie in glsl/splats.glsl: with pipelines for GPUs some of their numbers apart, four splats to a vector.
     splats: |plan| {
         let whole = plan.gaussians() * size_of::<Splat>() as u64;
-        match plan.way.shape {
+        match plan.cut.shape {
             DeviceShape::Cpu => whole,
             DeviceShape::Gpu { .. } => whole + plan.gaussians().div_ceil(4) * 16,
         }
@@ -32,7 +32,7 @@ memory! {
     };
     /// The keys of the splats' depths, and behind them the splats' numbers where the sort needs these; with pipelines for GPUs
     /// always twice as much as the keys, since their sort has a use for it later.
-    depth_keys: |plan| match plan.way.shape {
+    depth_keys: |plan| match plan.cut.shape {
         DeviceShape::Cpu => (4 + 4 * u64::from(finds_numbers(plan))) * plan.gaussians(),
         DeviceShape::Gpu { .. } => 8 * plan.gaussians(),
     };
@@ -48,16 +48,16 @@ memory! {
 const TURNS: u32 = 8;
 
 /// True where the sort finds the splats' numbers beside their keys.
-fn finds_numbers(plan: &Plan) -> bool {
-    plan.reordered && plan.way.shape == DeviceShape::Cpu
+fn finds_numbers(plan: &EyePlan) -> bool {
+    plan.reordered && plan.cut.shape == DeviceShape::Cpu
 }
 
 /// The shader reads spherical harmonics in one format; without cut splats it reads no cutoff records.
-impl FromPlan for project::Constants {
-    fn from_plan(plan: &Plan) -> Self {
+impl FromPlan<EyePlan> for project::Constants {
+    fn from_plan(plan: &EyePlan) -> Self {
         Self {
-            cut: plan.view_is_cut(),
-            layered: plan.way.layered,
+            cuts: plan.view_is_cut(),
+            layered: plan.cut.layered,
             sh_format: match plan.way.sh_format {
                 ShFormat::Byte => types::SH_BYTE,
                 ShFormat::Packed => types::SH_PACKED,
@@ -69,7 +69,7 @@ impl FromPlan for project::Constants {
             rects: plan.keeps_rects(),
             colours: plan.way.colours.code(),
             numbers: finds_numbers(plan),
-            local_size_x: match plan.way.shape {
+            local_size_x: match plan.cut.shape {
                 DeviceShape::Cpu => limits::SPLAT_GROUP_SIZE / TURNS,
                 DeviceShape::Gpu { .. } => limits::SPLAT_GROUP_SIZE,
             },
@@ -77,7 +77,7 @@ impl FromPlan for project::Constants {
     }
 }
 
-fn record(recording: &mut Recording<'_, '_>) {
+fn record(recording: &mut Recording<'_, '_, EyePlan>) {
     let buffers = buffers!(project {
         shared::MEMORY => [frame, counts],
         SCENE => [gaussians, sh],

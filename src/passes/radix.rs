@@ -2,9 +2,10 @@
 //! invocations read and write neighbouring memory. Stage `sort` sorts the splats with it, and stage `bin` the pairs of
 //! macro-tile and splat.
 
+use crate::passes::eye_plan::EyePlan;
 use crate::passes::pipelines::Pipeline;
-use crate::passes::plan::Plan;
 use crate::passes::recording::{Groups, Recording};
+use crate::passes::resources::EyeName;
 use crate::passes::shaders::{radix_count, radix_scan, radix_scatter};
 use crate::passes::shared;
 use crate::passes::storage::{Storage, buffers};
@@ -40,10 +41,10 @@ pub(super) struct RadixPipelines {
 }
 
 impl RadixPipelines {
-    pub(super) fn new(plan: &Plan, keys: Keys) -> Self {
+    pub(super) fn new(plan: &EyePlan, keys: Keys) -> Self {
         let pairs = keys == Keys::Pairs;
         // By ballots where the device can be asked for subgroups.
-        let scatter = match plan.way.shape {
+        let scatter = match plan.cut.shape {
             DeviceShape::Gpu { subgroup } if subgroup > 0 => &radix_scatter::SUBGROUP_COMP,
             _ => &radix_scatter::COMP,
         };
@@ -79,13 +80,13 @@ pub(super) struct Pass {
     /// Its number, from 0, and how many there are.
     pub(super) number: u32,
     pub(super) passes: u32,
-    pub(super) keys: [&'static Storage; 2],
-    pub(super) order: [&'static Storage; 2],
+    pub(super) keys: [&'static Storage<EyePlan>; 2],
+    pub(super) order: [&'static Storage<EyePlan>; 2],
     /// The keys for whichever pass is the first that the device does not skip.
-    pub(super) first_keys: &'static Storage,
-    pub(super) histogram: &'static Storage,
+    pub(super) first_keys: &'static Storage<EyePlan>,
+    pub(super) histogram: &'static Storage<EyePlan>,
     /// Where one pass that sorts all pairs leaves where those of each of so many macro-tiles begin.
-    pub(super) macro_begins: Option<(&'static Storage, u32)>,
+    pub(super) macro_begins: Option<(&'static Storage<EyePlan>, u32)>,
 }
 
 impl Pass {
@@ -93,8 +94,8 @@ impl Pass {
     pub(super) fn count(
         &self,
         pipelines: &RadixPipelines,
-        recording: &mut Recording<'_, '_>,
-        groups: Groups,
+        recording: &mut Recording<'_, '_, EyePlan>,
+        groups: Groups<EyeName>,
     ) {
         let keys = if self.number == 0 {
             self.first_keys
@@ -114,8 +115,8 @@ impl Pass {
     pub(super) fn carry(
         &self,
         pipelines: &RadixPipelines,
-        recording: &mut Recording<'_, '_>,
-        groups: Groups,
+        recording: &mut Recording<'_, '_, EyePlan>,
+        groups: Groups<EyeName>,
     ) {
         let buffers = buffers!(radix_scan {
             shared::MEMORY => [frame, counts];

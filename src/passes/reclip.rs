@@ -2,19 +2,21 @@
 //! new surface and change what the rasteriser holds of them. The splats, which are all in view, and their centres,
 //! colours, order and tiles stay.
 
-use crate::passes::block_list::{self, ListFor, groups_of_blocks, groups_of_list};
-use crate::passes::plan::Plan;
+use crate::passes::block_list::{
+    self, groups_of_blocks, groups_of_list, list_differing, looked_at,
+};
+use crate::passes::eye_plan::EyePlan;
 use crate::passes::recording::{Recording, counted};
 use crate::passes::shaders::{reclip, reclip_blocks, reclip_compact, reclip_scan, recut};
 use crate::passes::shared::{self, SCENE};
 use crate::passes::stage::Stage;
 use crate::passes::storage::{buffers, memory};
 use crate::passes::work::Work;
-use crate::passes::{blocks, classify, compact, cutoff, project};
+use crate::passes::{blocks, classify, clip, compact, cutoff, project};
 use rara_base::limits;
 
 /// The stage that finds which sides change.
-pub(crate) static RECLIP: Stage = Stage {
+pub(crate) static RECLIP: Stage<EyePlan> = Stage {
     name: "reclip",
     needed: |plan| plan.reclips(),
     missed: |_| false,
@@ -23,7 +25,7 @@ pub(crate) static RECLIP: Stage = Stage {
 };
 
 /// The stage that changes what the rasteriser holds of those splats.
-pub(crate) static RECUT: Stage = Stage {
+pub(crate) static RECUT: Stage<EyePlan> = Stage {
     name: "recut",
     needed: |plan| plan.reclips(),
     missed: |_| false,
@@ -32,7 +34,7 @@ pub(crate) static RECUT: Stage = Stage {
 };
 
 // Only frames whose camera has stood still have them.
-memory! {
+memory! { EyePlan:
     /// Which blocks are looked at.
     revisits: |plan| reclipped(plan, 4 * plan.blocks());
     /// What is kept of each block.
@@ -44,17 +46,17 @@ memory! {
 }
 
 /// So many bytes, in a reclipped frame.
-fn reclipped(plan: &Plan, bytes: u64) -> u64 {
+fn reclipped(plan: &EyePlan, bytes: u64) -> u64 {
     if plan.reclips() { bytes } else { 0 }
 }
 
-fn record_reclip(recording: &mut Recording<'_, '_>) {
+fn record_reclip(recording: &mut Recording<'_, '_, EyePlan>) {
     let buffers = buffers!(reclip_blocks {
-        shared::MEMORY => [frame, surfaces],
+        shared::MEMORY => [frame],
         SCENE => [blocks],
         blocks::MEMORY => [block_sides],
         classify::MEMORY => [block_counts],
-        block_list::MEMORY => [shortlists],
+        clip::MEMORY => [surfaces, shortlists],
         MEMORY => [revisits, reclips],
     });
     // No clip may have changed the splats yet.
@@ -63,34 +65,34 @@ fn record_reclip(recording: &mut Recording<'_, '_>) {
         fresh: fresh.into(),
     };
     recording.dispatch(buffers, params, groups_of_blocks(recording.plan));
-    block_list::record(recording, &MEMORY.revisits, ListFor::Clip);
-    let looked_at = counted!(clip_groups);
+    list_differing(recording, &MEMORY.revisits);
     let buffers = buffers!(reclip {
-        shared::MEMORY => [frame, surfaces, counts],
+        shared::MEMORY => [frame],
         SCENE => [gaussians],
-        block_list::MEMORY => [block_list, shortlists],
+        clip::MEMORY => [surfaces, shortlists],
+        block_list::MEMORY => [block_list],
         blocks::MEMORY => [block_sides],
         classify::MEMORY => [masks],
         MEMORY => [revisits, reclips],
     });
-    recording.dispatch(buffers, (), looked_at);
+    recording.dispatch(buffers, (), looked_at());
     let buffers = buffers!(reclip_scan {
         shared::MEMORY => [frame, counts],
         MEMORY => [revisits, reclips],
     });
     recording.dispatch(buffers, (), groups_of_list(recording.plan));
     let buffers = buffers!(reclip_compact {
-        shared::MEMORY => [frame, counts],
+        shared::MEMORY => [frame],
         block_list::MEMORY => [block_list],
         blocks::MEMORY => [block_sides],
         classify::MEMORY => [masks],
         compact::MEMORY => [block_offsets, cutoffs],
         MEMORY => [reclips, recuts],
     });
-    recording.dispatch(buffers, (), looked_at);
+    recording.dispatch(buffers, (), looked_at());
 }
 
-fn record_recut(recording: &mut Recording<'_, '_>) {
+fn record_recut(recording: &mut Recording<'_, '_, EyePlan>) {
     if recording.plan.is_tiled() {
         // All tiles are drawn again where no frame has drawn what is in view.
         let all = recording.plan.finds_view();

@@ -2,155 +2,141 @@
 
 use ash::vk;
 
-use crate::passes::buffers::Buffers;
-use crate::passes::pipelines::{FromPlan, Pipeline, PipelineKey, Pipelines};
-use crate::passes::plan::Plan;
-use crate::passes::scene_buffers::SceneBuffers;
+use crate::passes::owner::Owner;
+use crate::passes::pipelines::{FromPlan, Pipeline, PipelineKey};
+use crate::passes::resources::Resources;
 use crate::passes::shaders::{BufferSet, Compute, Interface};
-use crate::passes::shared;
-use crate::passes::storage::Storage;
-use rara_gpu::{self, Buffer, Recorder};
+use rara_gpu::{self, Recorder};
 
-/// The recording of a frame's stages.
-pub(crate) struct Recording<'a, 'r> {
-    pub(crate) plan: &'a Plan,
-    /// The rectangle of the host's depth under the picture, for tiles that it hides.
-    pub(crate) copied: vk::Rect2D,
-    target: Target<'a, 'r>,
+/// The recording of an owner's stages.
+pub(crate) struct Recording<'a, 'r, P: Owner> {
+    pub(crate) plan: &'a P,
+    target: Target<'a, 'r, P>,
 }
 
 /// Where the commands go.
-enum Target<'a, 'r> {
+enum Target<'a, 'r, P: Owner> {
     /// Nowhere: the function gets the pipelines that they need.
     Dry(&'a mut dyn FnMut(PipelineKey)),
-    Commands(&'a mut Recorder<'r>, Resources<'a>),
-}
-
-/// What a frame is recorded with.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Resources<'a> {
-    pub(crate) pipelines: &'a Pipelines,
-    pub(crate) scene: &'a SceneBuffers,
-    pub(crate) buffers: &'a Buffers,
-}
-
-impl<'a> Resources<'a> {
-    /// The buffer of a declaration.
-    fn buffer(&self, storage: &Storage) -> &'a Buffer {
-        match storage.of_scene {
-            Some(buffer) => buffer(self.scene),
-            None => self.buffers.get(storage),
-        }
-    }
+    Commands(&'a mut Recorder<'r>, &'a (dyn Resources<P::Name> + 'a)),
 }
 
 /// How many workgroups a dispatch has.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Groups {
+pub(super) enum Groups<N> {
     Count(u32),
-    /// Those of the indirect command at this offset in the frame's counts.
-    Counted(usize),
+    /// Those of the indirect command at this offset in a buffer.
+    Counted(N, usize),
 }
 
 /// The workgroups of the indirect command in a field of the frame's counts.
 macro_rules! counted {
     ($field:ident) => {
-        $crate::passes::recording::Groups::Counted(std::mem::offset_of!(
-            $crate::types::FrameCounts,
-            $field
-        ))
+        $crate::passes::recording::Groups::Counted(
+            $crate::passes::storage::named(&$crate::passes::shared::MEMORY.counts),
+            std::mem::offset_of!($crate::types::FrameCounts, $field),
+        )
     };
 }
 pub(super) use counted;
 
-impl<'a, 'r> Recording<'a, 'r> {
+impl<'a, 'r, P: Owner> Recording<'a, 'r, P> {
     /// Records into a command buffer.
     pub(super) fn new(
-        plan: &'a Plan,
+        plan: &'a P,
         recorder: &'a mut Recorder<'r>,
-        resources: Resources<'a>,
-        copied: vk::Rect2D,
+        resources: &'a (dyn Resources<P::Name> + 'a),
     ) -> Self {
         let target = Target::Commands(recorder, resources);
-        Self {
-            plan,
-            copied,
-            target,
-        }
+        Self { plan, target }
     }
 
     /// Records nothing; `need` gets each pipeline.
-    pub(super) fn dry(plan: &'a Plan, need: &'a mut dyn FnMut(PipelineKey)) -> Self {
+    pub(super) fn dry(plan: &'a P, need: &'a mut dyn FnMut(PipelineKey)) -> Self {
         Self {
             plan,
-            copied: vk::Rect2D::default(),
             target: Target::Dry(need),
         }
     }
 
+    /// The rectangle of the host's depth under the picture, for tiles that it hides.
+    pub(super) fn copied(&self) -> vk::Rect2D {
+        match &self.target {
+            Target::Dry(_) => vk::Rect2D::default(),
+            Target::Commands(_, resources) => resources.copied(),
+        }
+    }
+
     /// Records a dispatch of the program that has these buffers.
-    pub(super) fn dispatch<B, P>(&mut self, buffers: B, params: P::Params, groups: Groups)
+    pub(super) fn dispatch<B, C>(&mut self, buffers: B, params: C::Params, groups: Groups<P::Name>)
     where
-        B: BufferSet<&'static Storage, Program = P>,
-        P: Compute<Buffers<&'static Storage> = B>,
-        P::Constants: FromPlan,
+        B: BufferSet<P::Name, Program = C>,
+        C: Compute<Buffers<P::Name> = B>,
+        C::Constants: FromPlan<P>,
     {
-        let pipeline = Pipeline::<P>::from_plan(self.plan);
+        let pipeline = Pipeline::<C>::from_plan(self.plan);
         self.dispatch_pipeline(&pipeline, buffers, params, groups);
     }
 
     /// The same of one of several pipelines of a program.
-    pub(super) fn dispatch_pipeline<P: Interface>(
+    pub(super) fn dispatch_pipeline<C: Interface>(
         &mut self,
-        pipeline: &Pipeline<P>,
-        buffers: P::Buffers<&'static Storage>,
-        params: P::Params,
-        groups: Groups,
+        pipeline: &Pipeline<C>,
+        buffers: C::Buffers<P::Name>,
+        params: C::Params,
+        groups: Groups<P::Name>,
     ) {
         match &mut self.target {
             Target::Dry(need) => need(pipeline.key()),
             Target::Commands(recorder, resources) => {
-                let buffer = |storage| resources.buffer(storage);
+                let resources = *resources;
+                let buffer = |name| resources.buffer(name);
                 let groups = match groups {
                     Groups::Count(count) => rara_gpu::Groups::Count(count),
-                    Groups::Counted(offset) => {
-                        rara_gpu::Groups::Indirect(buffer(&shared::MEMORY.counts), offset as u64)
+                    Groups::Counted(name, offset) => {
+                        rara_gpu::Groups::Indirect(buffer(name), offset as u64)
                     }
                 };
-                let pipelines = resources.pipelines;
+                let pipelines = resources.pipelines();
                 pipeline.dispatch(pipelines, recorder, (buffers, buffer), params, groups);
             }
         }
     }
 
     /// Fills a buffer with a word.
-    pub(super) fn fill(&mut self, storage: &Storage, value: u32) {
+    pub(super) fn fill(&mut self, name: impl Into<P::Name>, value: u32) {
         if let Target::Commands(recorder, resources) = &mut self.target {
-            let buffer = resources.buffer(storage);
+            let buffer = resources.buffer(name.into());
             recorder.fill(buffer, 0, buffer.size(), value);
         }
     }
 
     /// Writes a few bytes to the beginning of a buffer.
-    pub(super) fn update(&mut self, storage: &Storage, bytes: &[u8]) {
+    pub(super) fn update(&mut self, name: impl Into<P::Name>, bytes: &[u8]) {
         if let Target::Commands(recorder, resources) = &mut self.target {
-            recorder.update(resources.buffer(storage), 0, bytes);
+            recorder.update(resources.buffer(name.into()), 0, bytes);
         }
     }
 
-    pub(super) fn copy(&mut self, from: &Storage, to: &Storage, region: vk::BufferCopy) {
+    pub(super) fn copy(
+        &mut self,
+        from: impl Into<P::Name>,
+        to: impl Into<P::Name>,
+        region: vk::BufferCopy,
+    ) {
         if let Target::Commands(recorder, resources) = &mut self.target {
-            recorder.copy(resources.buffer(from), resources.buffer(to), &[region]);
+            let [from, to] = [from.into(), to.into()].map(|name| resources.buffer(name));
+            recorder.copy(from, to, &[region]);
         }
     }
 
     /// Records a stage under its name.
-    pub(super) fn stage(&mut self, name: &'static str, record: fn(&mut Recording<'_, '_>)) {
-        let (plan, copied) = (self.plan, self.copied);
+    pub(super) fn stage(&mut self, name: &'static str, record: fn(&mut Recording<'_, '_, P>)) {
+        let plan = self.plan;
         match &mut self.target {
             Target::Dry(_) => record(self),
             Target::Commands(recorder, resources) => recorder.pass(name, |recorder| {
-                record(&mut Recording::new(plan, recorder, *resources, copied));
+                record(&mut Recording::new(plan, recorder, *resources));
             }),
         }
     }

@@ -1,10 +1,12 @@
 //! The scene on the device: geometry and spherical harmonics, uploaded once.
 
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use ash::vk;
 use bytemuck::cast_slice;
 
+use crate::passes::cut_plan::SceneFacts;
 use crate::passes::pair_estimate::PairSample;
 use crate::passes::scene_layer::{PackedLayer, SceneLayer, join_sets, layer_index, sizes};
 use crate::passes::sh_storage;
@@ -15,14 +17,14 @@ use rara_base::counted::counted;
 use rara_base::error::{Error, Result};
 use rara_base::limits;
 use rara_base::parallel::in_parallel;
-use rara_gpu::{Buffer, BufferDesc, Device, Location, Recorder, WriteOnly};
+use rara_gpu::{Buffer, BufferDesc, Device, DeviceShape, Location, Recorder, WriteOnly};
 use rara_scene::camera::Camera;
 use rara_scene::clip::Clip;
 use rara_scene::precision::ShFormat;
 use rara_scene::{LayerState, Scene, check_clip, sh_coefficients};
 
-/// A scene's Gaussians in device memory.
-#[derive(Debug)]
+/// A scene's Gaussians in device memory. A clone shares that memory, and has states and clips of its layers of its own.
+#[derive(Debug, Clone)]
 pub struct SceneBuffers {
     /// No other scene of this process has it.
     pub(crate) id: u64,
@@ -36,12 +38,13 @@ pub struct SceneBuffers {
     pub(crate) sh_format: ShFormat,
     layers: Vec<SceneLayer>,
     /// What the pairs of tile and splat are estimated from.
-    sample: PairSample,
-    /// How often layers have been changed.
+    sample: Arc<PairSample>,
+    /// No other change of layers in this process has it; 0 before any.
     pub(crate) changes: u64,
 }
 
 static NEXT_ID: AtomicU64 = AtomicU64::new(0);
+static CHANGES: AtomicU64 = AtomicU64::new(0);
 
 /// Gaussians converted at a time while uploading, so that the scene is never in memory a third time.
 const UPLOAD_CHUNK: usize = 1 << 16;
@@ -100,7 +103,7 @@ impl SceneBuffers {
     /// [`Renderer::configure`](crate::Renderer::configure) on. Nothing is uploaded again, and nothing has to be waited for.
     ///
     /// # Errors
-    /// [`Error::Invalid`] for a number that no layer has, and as of [`LayerState::check`]; the state is then as it was.
+    /// [`Error::Invalid`] for a number that no layer has, and the errors of [`LayerState::check`]; the state is then as it was.
     pub fn set_layer_state(&mut self, index: usize, state: LayerState) -> Result<()> {
         let layer = self.layer_mut(index)?;
         state.check(layer.name())?;
@@ -122,7 +125,7 @@ impl SceneBuffers {
     }
 
     fn layer_mut(&mut self, index: usize) -> Result<&mut SceneLayer> {
-        self.changes += 1;
+        self.changes = 1 + CHANGES.fetch_add(1, Ordering::Relaxed);
         let count = self.layers.len();
         self.layers.get_mut(index).ok_or_else(|| {
             Error::Invalid(format!(
@@ -256,7 +259,7 @@ impl SceneBuffers {
             sh_degree,
             sh_format: format,
             layers,
-            sample,
+            sample: Arc::new(sample),
             changes: 0,
         };
         log::info!(
@@ -278,6 +281,19 @@ impl SceneBuffers {
     /// The same of a picture that is a part of that of `whole`.
     pub(crate) fn estimated_pairs_of_part(&self, camera: &Camera, whole: &Camera) -> u32 {
         self.sample.pairs(&self.layers, camera, whole)
+    }
+
+    /// The facts that plans for a kind of device follow from.
+    pub(crate) fn facts(&self, shape: DeviceShape) -> SceneFacts<'_> {
+        SceneFacts {
+            layers: &self.layers,
+            gaussians: self.count,
+            blocks: self.block_count(),
+            reordered: self.reordered,
+            sh_degree: self.sh_degree,
+            sh_format: self.sh_format,
+            shape,
+        }
     }
 
     /// Blocks of all layers.

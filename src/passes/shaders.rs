@@ -9,7 +9,7 @@ use rara_gpu::{BufferAccess, BufferUse, MAX_BUFFERS, Shader};
 pub(crate) type BufferList<B> = SmallVec<[B; MAX_BUFFERS]>;
 
 /// Specialisation constants: id and value. No program has more, so that a list needs no memory of its own.
-pub(crate) type ConstantList = SmallVec<[(u32, u32); 14]>;
+pub(crate) type ConstantList = SmallVec<[(u32, u32); 15]>;
 
 /// The declarations of a program's shaders to the host.
 pub(crate) trait Interface {

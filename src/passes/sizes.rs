@@ -1,32 +1,38 @@
-//! The sizes of the frame's working memory, as they follow from plans.
+//! The sizes of an owner's memory, as they follow from plans.
 
-use crate::passes::plan::Plan;
+use std::marker::PhantomData;
+
+use crate::passes::owner::Owner;
 use crate::passes::storage::Storage;
 
 /// The bytes of each buffer that frames need.
-#[derive(Debug, Clone)]
-pub(crate) struct Sizes {
+#[derive(Debug)]
+pub(crate) struct Sizes<P: Owner> {
     /// True when they are the most of many frames, whose scenes may be smaller.
     reserved: bool,
     /// Gaussians and blocks of the scene.
     scene: [u64; 2],
-    /// All buffers, by their places.
-    storages: &'static [&'static Storage],
-    /// Their bytes.
+    /// By the places of the declarations.
     bytes: Vec<u64>,
+    owner: PhantomData<P>,
 }
 
-impl Sizes {
-    /// The sizes of these buffers for a plan.
-    pub(super) fn new(storages: &'static [&'static Storage], plan: &Plan) -> Self {
+impl<P: Owner> Clone for Sizes<P> {
+    fn clone(&self) -> Self {
+        let bytes = self.bytes.clone();
+        Self { bytes, ..*self }
+    }
+}
+
+impl<P: Owner> Sizes<P> {
+    /// The sizes for a plan.
+    pub(crate) fn new(plan: &P) -> Self {
+        let bytes = P::storages().iter().map(|storage| (storage.bytes)(plan));
         Self {
             reserved: false,
-            scene: [plan.gaussians(), plan.blocks()],
-            storages,
-            bytes: storages
-                .iter()
-                .map(|storage| (storage.bytes)(plan))
-                .collect(),
+            scene: plan.scene_size(),
+            bytes: bytes.collect(),
+            owner: PhantomData,
         }
     }
 
@@ -59,16 +65,14 @@ impl Sizes {
         self.reserved || self.scene == other.scene
     }
 
-    pub(super) fn bytes(&self, storage: &Storage) -> u64 {
+    pub(super) fn bytes(&self, storage: &Storage<P>) -> u64 {
         self.bytes[storage.place()]
     }
 
     /// All buffers and their bytes, by their places.
-    pub(super) fn all(&self) -> impl Iterator<Item = (&'static Storage, u64)> {
-        self.storages
-            .iter()
-            .copied()
-            .zip(self.bytes.iter().copied())
+    pub(super) fn all(&self) -> impl Iterator<Item = (&'static Storage<P>, u64)> {
+        let storages = P::storages().iter().copied();
+        storages.zip(self.bytes.iter().copied())
     }
 
     pub(crate) fn largest(&self) -> u64 {

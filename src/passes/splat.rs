@@ -6,8 +6,8 @@ use std::mem::offset_of;
 use ash::vk;
 
 use crate::passes::buffers::Buffers;
+use crate::passes::eye_plan::EyePlan;
 use crate::passes::pipelines::{Draw, Pipelines};
-use crate::passes::plan::Plan;
 use crate::passes::shaders::splat;
 use crate::passes::storage::buffers;
 use crate::passes::weight::{self, Weight};
@@ -18,7 +18,7 @@ use rara_scene::depth::DepthMap;
 use rara_scene::settings::Raster;
 
 /// The pipeline that a plan needs: without a clip the fragment shader holds no clip code.
-pub(crate) fn draw(plan: &Plan, attachments: Attachments) -> Draw<splat::Program> {
+pub(crate) fn draw(plan: &EyePlan, attachments: Attachments) -> Draw<splat::Program> {
     let one_sample = attachments.samples == vk::SampleCountFlags::TYPE_1;
     let shaders = match plan.way.raster {
         Raster::Mesh if one_sample => [&splat::MESH, &splat::MESH_FRAG],
@@ -31,6 +31,7 @@ pub(crate) fn draw(plan: &Plan, attachments: Attachments) -> Draw<splat::Program
         clip_mode: weight.mode,
         several: weight.several,
         combined: weight.combined,
+        many: weight.many,
         decay: weight.decay,
         miss: weight.miss,
         phi_form: weight.phi,
@@ -46,7 +47,7 @@ pub(crate) fn draw(plan: &Plan, attachments: Attachments) -> Draw<splat::Program
 pub(crate) fn record(
     drawer: &mut Drawer<'_>,
     pipelines: &Pipelines,
-    (plan, b): (&Plan, &Buffers),
+    (plan, b): (&EyePlan, &Buffers<EyePlan>),
     attachments: Attachments,
     origin: [f32; 2],
     map: Option<DepthMap>,
@@ -63,7 +64,7 @@ pub(crate) fn record(
         principal_point: plan.principal_point(origin),
         depth_offset,
         depth_scale,
-        sigma: plan.data.region.sigma,
+        sigma: plan.cut.data.region.sigma,
         cut_stride: plan.data.weight.cut_stride,
         alpha_max: plan.data.tiles.alpha_max,
     };

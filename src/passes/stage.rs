@@ -1,32 +1,33 @@
 //! A stage of the frame.
 
-use crate::passes::plan::Plan;
+use crate::passes::eye_plan::EyePlan;
+use crate::passes::owner::Owner;
 use crate::passes::recording::Recording;
 use crate::passes::storage::Storage;
 use rara_gpu::Attachments;
 use rara_scene::settings::Show;
 
-/// A step of the frame that is computed before the draw.
+/// A step of the frame that is computed before the draw, for the owner of a plan.
 #[derive(Debug)]
-pub(crate) struct Stage {
+pub(crate) struct Stage<P: Owner> {
     /// The name of its file, debug label, timer and statistics.
     pub(crate) name: &'static str,
-    /// True for a frame that needs it.
-    pub(crate) needed: fn(&Plan) -> bool,
-    /// True for a frame that, without it, reports that it was skipped.
-    pub(crate) missed: fn(&Plan) -> bool,
+    /// True for a plan that needs it.
+    pub(crate) needed: fn(&P) -> bool,
+    /// True for a plan that, without it, reports that it was skipped.
+    pub(crate) missed: fn(&P) -> bool,
     /// The buffers that it writes and that no earlier stage has.
-    pub(crate) memory: &'static [&'static [&'static Storage]],
-    /// Records it in a frame that needs it.
-    pub(crate) record: fn(&mut Recording<'_, '_>),
+    pub(crate) memory: &'static [&'static [&'static Storage<P>]],
+    /// Records it for a plan that needs it.
+    pub(crate) record: fn(&mut Recording<'_, '_, P>),
 }
 
-impl Stage {
+impl Stage<EyePlan> {
     /// A stage of every frame that finds which Gaussians are in view.
     pub(crate) const fn when_finding_view(
         name: &'static str,
-        memory: &'static [&'static [&'static Storage]],
-        record: fn(&mut Recording<'_, '_>),
+        memory: &'static [&'static [&'static Storage<EyePlan>]],
+        record: fn(&mut Recording<'_, '_, EyePlan>),
     ) -> Self {
         Self {
             name,

@@ -1,81 +1,80 @@
 //! The buffers that stages hand to each other. Each is declared once, beside the stage that writes it: its name, which is that
-//! of the shaders' bindings, and its bytes as they follow from a plan.
+//! of the shaders' bindings, and its bytes as they follow from its owner's plan.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use crate::passes::plan::Plan;
-use crate::passes::scene_buffers::SceneBuffers;
-use rara_gpu::{Buffer, Location};
+use rara_gpu::Location;
 
-/// The declaration of a buffer.
+/// The declaration of a buffer that a plan's owner has.
 #[derive(Debug)]
-pub(crate) struct Storage {
+pub(crate) struct Storage<P> {
     /// The debug name.
     pub(super) name: &'static str,
-    /// Bytes that a frame of a plan needs.
-    pub(super) bytes: fn(&Plan) -> u64,
-    /// Who reaches it in a frame of a plan.
-    pub(super) location: fn(&Plan) -> Location,
-    /// The buffer of a scene; `None` of one that is the frame's own.
-    pub(super) of_scene: Option<fn(&SceneBuffers) -> &Buffer>,
-    /// The place in a frame's memory; none before all declarations are numbered.
+    /// Bytes that a plan needs.
+    pub(super) bytes: fn(&P) -> u64,
+    /// Who reaches it.
+    pub(super) location: fn(&P) -> Location,
+    /// The place in the owner's memory; none before all declarations are numbered.
     place: AtomicUsize,
 }
 
-impl Storage {
-    /// A buffer of the frame that only the device sees.
-    pub(super) const fn new(name: &'static str, bytes: fn(&Plan) -> u64) -> Self {
+impl<P> Storage<P> {
+    /// A buffer that only the device sees.
+    pub(super) const fn new(name: &'static str, bytes: fn(&P) -> u64) -> Self {
         Self {
             name,
             bytes,
             location: |_| Location::GpuOnly,
-            of_scene: None,
             place: AtomicUsize::new(usize::MAX),
         }
     }
 
     /// The same in memory that the host may see too.
-    pub(super) const fn located(self, location: fn(&Plan) -> Location) -> Self {
+    pub(super) const fn located(self, location: fn(&P) -> Location) -> Self {
         Self { location, ..self }
-    }
-
-    pub(super) const fn of_scene(name: &'static str, buffer: fn(&SceneBuffers) -> &Buffer) -> Self {
-        let of_scene = Some(buffer);
-        Self {
-            of_scene,
-            ..Self::new(name, |_| 0)
-        }
     }
 
     pub(super) fn place(&self) -> usize {
         self.place.load(Ordering::Relaxed)
     }
 
-    /// Numbers all declarations by their places.
-    pub(super) fn number(all: &[&Self]) {
+    /// Numbers all declarations of these lists by their places.
+    pub(super) fn numbered<'a>(
+        lists: impl Iterator<Item = &'a &'static [&'static Self]>,
+    ) -> Vec<&'static Self>
+    where
+        P: 'static,
+    {
+        let all: Vec<_> = lists.flat_map(|list| list.iter().copied()).collect();
         for (place, storage) in all.iter().enumerate() {
             storage.place.store(place, Ordering::Relaxed);
         }
+        all
     }
+}
+
+/// The name of a declaration, for those who reach it.
+pub(super) fn named<S, N: From<S>>(declaration: S) -> N {
+    N::from(declaration)
 }
 
 /// Declares the buffers that the stages of a file write first, `name: bytes of a plan` each: `MEMORY` has them by name, and
 /// `STORAGES` is their list.
 macro_rules! memory {
-    ($($(#[$doc:meta])* $name:ident: $bytes:expr $(, in $location:expr)?;)+) => {
+    ($plan:ty: $($(#[$doc:meta])* $name:ident: $bytes:expr $(, in $location:expr)?;)+) => {
         /// The buffers that this file declares.
         #[derive(Debug)]
         pub(in crate::passes) struct Memory {
-            $($(#[$doc])* pub(in crate::passes) $name: $crate::passes::storage::Storage,)+
+            $($(#[$doc])* pub(in crate::passes) $name: $crate::passes::storage::Storage<$plan>,)+
         }
 
         /// The buffers that this file declares.
         pub(in crate::passes) static MEMORY: Memory = Memory {
-            $($name: $crate::passes::storage::Storage::new(stringify!($name), $bytes)$(.located($location))?,)+
+            $($name: $crate::passes::storage::Storage::<$plan>::new(stringify!($name), $bytes)$(.located($location))?,)+
         };
 
         /// The list of these buffers.
-        pub(in crate::passes) static STORAGES: &[&$crate::passes::storage::Storage] = &[$(&MEMORY.$name),+];
+        pub(in crate::passes) static STORAGES: &[&$crate::passes::storage::Storage<$plan>] = &[$(&MEMORY.$name),+];
     };
 }
 pub(super) use memory;
@@ -88,9 +87,11 @@ macro_rules! buffers {
         $(; $($other:ident $(: $buffer:expr)?),+ $(,)?)?
     }) => {
         $program::Buffers {
-            $($($name: &$from.$name,)+)+
-            $($($other $(: $buffer)?,)+)?
+            $($($name: $crate::passes::storage::named(&$from.$name),)+)+
+            $($($other: $crate::passes::storage::buffers!(@ $other $($buffer)?),)+)?
         }
     };
+    (@ $other:ident $buffer:expr) => { $crate::passes::storage::named($buffer) };
+    (@ $other:ident) => { $crate::passes::storage::named($other) };
 }
 pub(super) use buffers;

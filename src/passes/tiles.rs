@@ -4,8 +4,8 @@
 
 use crate::passes::bin::{lists, macro_tiles};
 use crate::passes::buffers::Buffers;
+use crate::passes::eye_plan::EyePlan;
 use crate::passes::pipelines::Pipeline;
-use crate::passes::plan::Plan;
 use crate::passes::recording::{Recording, counted};
 use crate::passes::shaders::tiles;
 use crate::passes::stage::Stage;
@@ -18,7 +18,7 @@ use crate::types;
 use rara_base::limits;
 use rara_gpu::{Buffer, DeviceShape};
 
-pub(crate) static STAGE: Stage = Stage {
+pub(crate) static STAGE: Stage<EyePlan> = Stage {
     name: "tiles",
     needed: |plan| plan.is_tiled() && plan.work != Work::Draw,
     missed: |plan| plan.is_tiled() || plan.gaussians() == 0,
@@ -26,9 +26,9 @@ pub(crate) static STAGE: Stage = Stage {
     record,
 };
 
-memory! {
+memory! { EyePlan:
     /// The picture that the tiles make.
-    tile_picture: |plan| plan.when_tiled(plan.pixels() * plan.way.tile_pixels.bytes()), in Plan::picture_location;
+    tile_picture: |plan| plan.when_tiled(plan.pixels() * plan.way.tile_pixels.bytes()), in EyePlan::picture_location;
     /// The host's depth; empty where it hides nothing.
     occluders: |plan| plan.occluders.map_or(0, |_| plan.when_tiled(4 * plan.pixels()));
 }
@@ -45,8 +45,8 @@ enum List {
 }
 
 /// The lists that a frame draws.
-fn drawn_lists(plan: &Plan) -> &'static [List] {
-    match plan.way.shape {
+fn drawn_lists(plan: &EyePlan) -> &'static [List] {
+    match plan.cut.shape {
         DeviceShape::Cpu => &[List::All],
         // A reclipped frame takes over the lists of a frame in which nothing was cut.
         DeviceShape::Gpu { .. }
@@ -58,7 +58,7 @@ fn drawn_lists(plan: &Plan) -> &'static [List] {
     }
 }
 
-fn pipeline(plan: &Plan, list: List) -> Pipeline<tiles::Program> {
+fn pipeline(plan: &EyePlan, list: List) -> Pipeline<tiles::Program> {
     let weight = Weight::from_plan(plan);
     let is_one_of_two = list == List::Few && drawn_lists(plan).len() > 1;
     let work = plan.tile_work;
@@ -66,6 +66,7 @@ fn pipeline(plan: &Plan, list: List) -> Pipeline<tiles::Program> {
         clip_mode: weight.mode,
         several: weight.several && !is_one_of_two,
         combined: weight.combined && !is_one_of_two,
+        many: weight.many && !is_one_of_two,
         decay: weight.decay,
         miss: weight.miss,
         phi_form: weight.phi,
@@ -89,13 +90,13 @@ fn pipeline(plan: &Plan, list: List) -> Pipeline<tiles::Program> {
     }
 }
 
-fn record(recording: &mut Recording<'_, '_>) {
+fn record(recording: &mut Recording<'_, '_, EyePlan>) {
     let plan = recording.plan;
     let [depth_offset, depth_scale] = plan.occluders.map_or([0.0; 2], |o| o.map.factors());
-    let (at, size) = (recording.copied.offset, recording.copied.extent);
+    let (at, size) = (recording.copied().offset, recording.copied().extent);
     let params = tiles::Params {
         principal_point: plan.principal_point([0.0; 2]),
-        sigma: plan.data.region.sigma,
+        sigma: plan.cut.data.region.sigma,
         cut_stride: plan.data.weight.cut_stride,
         depth_offset,
         depth_scale,
@@ -128,7 +129,7 @@ fn record(recording: &mut Recording<'_, '_>) {
 }
 
 /// The picture that the tiles of a frame make.
-pub(crate) fn picture(b: &Buffers) -> TilePicture {
+pub(crate) fn picture(b: &Buffers<EyePlan>) -> TilePicture {
     TilePicture {
         begins: b.get(&lists::MEMORY.tile_begins).clone(),
         pixels: b.get(&MEMORY.tile_picture).clone(),
@@ -136,6 +137,6 @@ pub(crate) fn picture(b: &Buffers) -> TilePicture {
 }
 
 /// The host's depth for tiles.
-pub(crate) fn occluders(b: &Buffers) -> &Buffer {
+pub(crate) fn occluders(b: &Buffers<EyePlan>) -> &Buffer {
     b.get(&MEMORY.occluders)
 }

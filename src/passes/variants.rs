@@ -1,17 +1,18 @@
 //! The constants of the programs that handle blocks, cut splats and their changes, as they follow from a plan.
 
-use crate::passes::block_list::list_invocations;
+use crate::passes::block_list::{ListsBlocks, list_invocations};
+use crate::passes::cut_plan::CutPlan;
+use crate::passes::eye_plan::EyePlan;
 use crate::passes::pipelines::FromPlan;
-use crate::passes::plan::Plan;
 use crate::passes::shaders;
 use rara_base::limits;
 use rara_gpu::DeviceShape;
 
-/// The constants of a program, each a function of the plan.
+/// The constants of a program, each a function of the plan of its owner.
 macro_rules! constants {
-    ($program:ident $(, $constant:ident: $of:expr)*) => {
-        impl FromPlan for shaders::$program::Constants {
-            fn from_plan(plan: &Plan) -> Self {
+    ($owner:ty: $program:ident $(, $constant:ident: $of:expr)*) => {
+        impl FromPlan<$owner> for shaders::$program::Constants {
+            fn from_plan(plan: &$owner) -> Self {
                 Self {
                     $($constant: $of(plan),)*
                 }
@@ -22,41 +23,55 @@ macro_rules! constants {
 
 /// The same of a program that reads layers: also whether there are several.
 macro_rules! layered {
-    ($program:ident $(, $constant:ident: $of:expr)*) => {
-        constants!($program, layered: is_layered $(, $constant: $of)*);
+    ($owner:ty: $program:ident $(, $constant:ident: $of:expr)*) => {
+        constants!($owner: $program, layered: is_layered $(, $constant: $of)*);
     };
 }
 
 // Without a clip the shaders hold no clip code.
-layered!(blocks, clip: Plan::view_is_clipped, combined: is_combined, shortlisted: Plan::is_shortlisted);
-layered!(classify, clip: Plan::view_is_clipped, combined: is_combined, shortlisted: Plan::is_shortlisted, local_size_x: mask_invocations);
-layered!(clip_blocks, combined: is_combined, shortlisted: Plan::is_shortlisted);
-layered!(clip, combined: is_combined, shortlisted: Plan::is_shortlisted, local_size_x: mask_invocations);
-constants!(block_list, local_size_x: list_invocations);
-layered!(compact_scan, local_size_x: list_invocations);
-layered!(compact, cut: Plan::view_is_cut);
-layered!(cutoff, has_terms: is_for_cpu, combined: is_combined, shortlisted: Plan::is_shortlisted);
-layered!(depth, combined: is_combined, shortlisted: Plan::is_shortlisted);
-layered!(reclip_blocks, combined: is_combined, shortlisted: Plan::is_shortlisted);
-layered!(reclip, combined: is_combined, shortlisted: Plan::is_shortlisted, local_size_x: mask_invocations);
-constants!(reclip_scan, local_size_x: list_invocations);
-layered!(recut, tiles: Plan::is_tiled, quads: Plan::needs_quads, rects: Plan::keeps_rects);
+layered!(CutPlan: clip_blocks, combined: is_combined, shortlisted: is_shortlisted);
+layered!(CutPlan: clip, combined: is_combined, shortlisted: is_shortlisted, local_size_x: mask_invocations);
+constants!(CutPlan: block_list, local_size_x: list_invocations);
+constants!(EyePlan: block_list, local_size_x: list_invocations);
+layered!(EyePlan: blocks, clip: EyePlan::view_is_clipped, combined: is_combined, shortlisted: is_shortlisted);
+layered!(EyePlan: classify, clip: EyePlan::view_is_clipped, combined: is_combined, shortlisted: is_shortlisted, local_size_x: mask_invocations);
+layered!(EyePlan: compact_scan, local_size_x: list_invocations);
+layered!(EyePlan: compact, cuts: EyePlan::view_is_cut);
+layered!(EyePlan: cutoff, has_terms: is_for_cpu, combined: is_combined, several: is_several, many: is_many, shortlisted: is_shortlisted);
+layered!(EyePlan: depth, combined: is_combined, shortlisted: is_shortlisted);
+layered!(EyePlan: reclip_blocks, combined: is_combined, shortlisted: is_shortlisted);
+layered!(EyePlan: reclip, combined: is_combined, shortlisted: is_shortlisted, local_size_x: mask_invocations);
+constants!(EyePlan: reclip_scan, local_size_x: list_invocations);
+layered!(EyePlan: recut, tiles: EyePlan::is_tiled, quads: EyePlan::needs_quads, rects: EyePlan::keeps_rects);
 
-fn is_layered(plan: &Plan) -> bool {
-    plan.way.layered
+fn is_layered(plan: &impl ListsBlocks) -> bool {
+    plan.cut().layered
 }
 
-fn is_combined(plan: &Plan) -> bool {
-    plan.layers.are_combined()
+fn is_combined(plan: &impl ListsBlocks) -> bool {
+    plan.cut().layers.are_combined()
 }
 
-fn is_for_cpu(plan: &Plan) -> bool {
-    plan.way.shape == DeviceShape::Cpu
+fn is_shortlisted(plan: &impl ListsBlocks) -> bool {
+    plan.cut().is_shortlisted()
+}
+
+/// Programs for planes alone are the same for one and for several.
+fn is_several(plan: &EyePlan) -> bool {
+    plan.cut.layers.are_combined() && plan.cut.layers.are_several()
+}
+
+fn is_many(plan: &EyePlan) -> bool {
+    plan.cut.layers.are_many()
+}
+
+fn is_for_cpu(plan: &EyePlan) -> bool {
+    plan.cut.shape == DeviceShape::Cpu
 }
 
 /// The invocations that find a block's masks: one for each word of a mask on CPU drivers, and one for each Gaussian on GPUs.
-fn mask_invocations(plan: &Plan) -> u32 {
-    match plan.way.shape {
+fn mask_invocations(plan: &impl ListsBlocks) -> u32 {
+    match plan.cut().shape {
         DeviceShape::Cpu => limits::BLOCK_SIZE / u32::BITS,
         DeviceShape::Gpu { .. } => limits::BLOCK_SIZE,
     }

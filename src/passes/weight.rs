@@ -1,7 +1,7 @@
 //! The settings that the weight of cut splats depends on, as constants of the pipelines that compute it. Settings that a
 //! mode does not use are left at one value, so that no two pipelines differ in them alone.
 
-use crate::passes::plan::Plan;
+use crate::passes::eye_plan::EyePlan;
 use crate::types;
 use rara_scene::settings::Show;
 
@@ -25,6 +25,8 @@ pub(crate) struct Weight {
     pub(crate) several: bool,
     /// True when splats may be weighed as combinations of surfaces that bend.
     pub(crate) combined: bool,
+    /// True when more than `RECORD_SURFACES` may cut a splat.
+    pub(crate) many: bool,
     /// `DECAY_*`.
     pub(crate) decay: u32,
     /// `MISS_*`.
@@ -35,21 +37,22 @@ pub(crate) struct Weight {
 
 impl Weight {
     /// The constants of a plan. After a hard clip nothing is left for the fragment stage to do.
-    pub(crate) fn from_plan(plan: &Plan) -> Self {
+    pub(crate) fn from_plan(plan: &EyePlan) -> Self {
         let when = |needed: bool, value: u32| if needed { value } else { 0 };
-        let (cuts, mode, laws) = (plan.cuts(), plan.mode(), plan.laws);
+        let (cuts, mode, laws) = (plan.cut.cuts(), plan.cut.mode(), plan.laws);
         Self {
             mode: when(cuts, mode),
-            several: cuts && (plan.layers.most_surfaces() > 1 || plan.layers.are_combined()),
-            combined: cuts && plan.layers.are_combined(),
+            several: cuts && plan.cut.layers.are_several(),
+            combined: cuts && plan.cut.layers.are_combined(),
+            many: cuts && plan.cut.layers.are_many(),
             decay: when(cuts, laws.decay),
             miss: when(cuts && mode == types::MODE_RARA, laws.miss),
             phi: when(cuts && mode == types::MODE_EXACT, laws.phi),
         }
     }
 
-    /// True when tiles in which several surfaces cut a splat are told from the others.
+    /// True when tiles in which several surfaces, or one that bends, cut a splat are told from the others.
     pub(super) fn has_several_kinds(&self) -> bool {
-        self.several && self.mode == types::MODE_EXACT
+        (self.several || self.combined) && self.mode == types::MODE_EXACT
     }
 }

@@ -1,16 +1,13 @@
-//! The part of a frame that has to be computed.
+//! Finds which part of an eye's frame has to be computed, and compares data.
 
 use bytemuck::bytes_of;
 
-/// The part of a frame that has to be computed.
+/// The part of an eye's frame that has to be computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Work {
-    /// Everything, but for the clip's sides where those in the buffers hold.
-    Whole {
-        /// True when the clip's sides have to be found.
-        clip: bool,
-    },
-    /// The camera stands still and the clip has moved: the sides that change, and what follows from them.
+    /// Everything that the eye has a part in.
+    Whole,
+    /// The eye stands still and the clip has moved: the sides that change, and what follows from them.
     Reclip {
         /// True when the Gaussians in view, clipped away or not, have to be found first.
         base: bool,

@@ -35,15 +35,15 @@ impl<T: Real> CombinedCut<T> {
             ..self.gradients
         };
         let sight = Sight::new(gradients, [dx, dy]);
-        let Some(front) = self.front_of(&sight) else {
+        let (Some(half_space), Some(front)) = (self.front, self.front_of(&sight)) else {
             return self.surfaces.share(&sight);
         };
-        // The eye is at -front on the line, and what is beyond t is this share of what is beyond the eye.
+        // The eye is at -front on lines across its plane, and what is beyond t is this share of what is beyond the eye.
         let beyond = |t: T| tail_ratio(-t, front);
         let ends = (-front, T::infinity());
-        let share = self
-            .surfaces
-            .measure(&sight, ends, &|low, high| beyond(low) - beyond(high));
+        let kept = |low, high| beyond(low) - beyond(high);
+        let surfaces = &self.surfaces;
+        let share = surfaces.measure_across(&sight, half_space.normal, ends, &kept);
         share.max(T::zero()).min(T::one())
     }
 
@@ -73,9 +73,11 @@ impl<T: Real> CombinedCut<T> {
         if !(squared > T::zero() && whole > T::zero()) {
             return missed_share(miss, self.surfaces.keeps(sight.mean));
         }
-        let kept = self
-            .surfaces
-            .measure(&sight, (start, half), &|low, high| high - low);
+        let kept =
+            self.surfaces
+                .measure_line((sight.mean, sight.line()), (start, half), &|low, high| {
+                    high - low
+                });
         (kept / whole).max(T::zero()).min(T::one())
     }
 }

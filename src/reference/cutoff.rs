@@ -6,8 +6,9 @@ use super::combined::CombinedCut;
 use super::exact::{AffinePlane, Beam};
 use super::footprint::Footprint;
 use super::real::{Real, Vec3};
-use super::region::{self, Combination, HalfSpace, RegionRest, Side};
+use super::region::{self, Combination, HalfSpace, RegionRest, Side, Symmetric, UnitSurface};
 use super::view::ViewTransform;
+use rara_base::limits::RECORD_SURFACES;
 use rara_scene::Gaussians;
 use rara_scene::camera::Projection;
 use rara_scene::clip::{Clip, ClipOp};
@@ -84,31 +85,43 @@ pub fn cutoff<T: Real>(
             let half_spaces = half_spaces.collect();
             of_planes(&gaussian, view, half_spaces, op)
         }
-        (RegionRest::Cut(surfaces), None) => {
-            let is_chord = settings.mode == Mode::Rara;
-            let follows_rays = is_chord || gaussian.is_beam();
-            let front = HalfSpace {
-                normal: footprint.rows[2],
-                offset: footprint.view_centre.z,
-            };
-            let has_front = match is_chord {
-                true => footprint.projection == Projection::Perspective,
-                false => follows_rays && footprint.holds_the_eye(),
-            };
-            SplatCut::Combined(CombinedCut {
-                gradients: match follows_rays {
-                    true => footprint.true_gradients(view),
-                    false => footprint.gradients,
-                },
-                lean: match follows_rays {
-                    true => footprint.lean(),
-                    false => Vec3::zero(),
-                },
-                surfaces: Combination(surfaces),
-                front: has_front.then_some(front),
-                chord: is_chord.then(|| (T::of(f64::from(settings.sigma)), settings.miss)),
-            })
-        }
+        (RegionRest::Cut(surfaces), None) => of_combination(&gaussian, view, surfaces),
+    })
+}
+
+/// The record of a splat whose surfaces bend, combine, or are many.
+fn of_combination<T: Real>(
+    gaussian: &GaussianInView<'_, T>,
+    view: &ViewTransform<T>,
+    surfaces: Vec<(UnitSurface<T>, Vec<ClipOp>)>,
+) -> SplatCut<T> {
+    let &GaussianInView {
+        footprint,
+        settings,
+        ..
+    } = gaussian;
+    let is_chord = settings.mode == Mode::Rara;
+    let follows_rays = is_chord || gaussian.is_beam();
+    let front = HalfSpace {
+        normal: footprint.rows[2],
+        offset: footprint.view_centre.z,
+    };
+    let has_front = match is_chord {
+        true => footprint.projection == Projection::Perspective,
+        false => follows_rays && footprint.holds_the_eye(),
+    };
+    SplatCut::Combined(CombinedCut {
+        gradients: match follows_rays {
+            true => footprint.true_gradients(view),
+            false => footprint.gradients,
+        },
+        lean: match follows_rays {
+            true => footprint.lean(),
+            false => Vec3::zero(),
+        },
+        surfaces: Combination(surfaces),
+        front: has_front.then_some(front),
+        chord: is_chord.then(|| (T::of(f64::from(settings.sigma)), settings.miss)),
     })
 }
 
@@ -137,6 +150,15 @@ fn of_planes<T: Real>(
             sigma: T::of(f64::from(settings.sigma)),
             miss: settings.miss,
         }),
+        _ if half_spaces.len() > RECORD_SURFACES as usize => {
+            let surfaces = half_spaces.into_iter().enumerate();
+            let surfaces = surfaces.map(|(number, half_space)| {
+                let bend = Symmetric::zero();
+                let operators = if number == 0 { vec![] } else { vec![op] };
+                (UnitSurface { half_space, bend }.scaled(), operators)
+            });
+            of_combination(gaussian, view, surfaces.collect())
+        }
         _ if gaussian.is_beam() => SplatCut::Beam(Beam::new(footprint, view, half_spaces, op)),
         _ => SplatCut::Affine {
             planes: half_spaces

@@ -9,9 +9,9 @@
 //! splatting (the paper's equation 9) makes of the truncated Gaussian, filtered like every other splat.
 
 use super::footprint::{Footprint, Gradients, determinant, scaled};
-use super::orthant::{Direction, Threshold};
 use super::real::{Real, Vec3};
 use super::region::{HalfSpace, share};
+use super::threshold::{Direction, Threshold};
 use super::view::ViewTransform;
 use rara_scene::clip::ClipOp;
 

@@ -12,7 +12,7 @@ use glam::{Quat, Vec3 as Point};
 
 use super::real::{Real, Vec3, vec3};
 use super::view::ViewTransform;
-use rara_base::limits::{ALPHA_MIN_INVERSE, COMPENSATION_SQUARE_MIN};
+use rara_base::limits::{ALPHA_MIN_INVERSE, COMPENSATION_SQUARE_MIN, THINNEST};
 use rara_scene::Gaussians;
 use rara_scene::camera::Projection;
 
@@ -200,9 +200,10 @@ fn stretch<T: Real>(clamped: Gradients<T>, [c1, c2]: [Vec3<T>; 2]) -> T {
     ((squares + rest) / determinant).sqrt().max(T::one())
 }
 
-/// Columns of R(q) S.
+/// Columns of R(q) S, with a thickness for discs.
 pub fn half_axes<T: Real>(scale: Point, rotation: Quat) -> [Vec3<T>; 3] {
     let [x, y, z, w] = rotation.to_array().map(|v| T::of(f64::from(v)));
+    let scale = scale.max(Point::splat(THINNEST * scale.max_element()));
     let [sx, sy, sz] = scale.to_array().map(|v| T::of(f64::from(v)));
     let (one, two) = (T::one(), T::of(2.0));
     [

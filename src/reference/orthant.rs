@@ -14,74 +14,11 @@
 //! two, which are those that depend most on each other, and ends at the actual correlations; each of the two that grow adds
 //! its bivariate density times the chance that the third is positive (Genz, 2004).
 //!
-//! Four and more planes meet in one pixel of one splat only at the ends of small boxes. The pairs' dependences are taken
-//! to add up (Kirkwood's superposition), between bounds that the pairs give (from below Hunter's tree, 1976), which meet in
-//! the share where correlations are full.
+//! The chance of four and more is that of the polytope that they bound.
 
-use super::real::{Real, Vec3};
-
-/// A plane in a pixel.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Threshold<T> {
-    /// Mean over deviation of the plane's distance.
-    pub z: T,
-    /// True when the visible side is the farther one along the ray.
-    pub far: bool,
-    /// The half-space's direction among what the pixel leaves open of the Gaussian: a unit vector of ten components.
-    pub direction: Direction<T>,
-}
-
-/// A unit vector: its component along the ray, and three vectors of components that the low-pass leaves open.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Direction<T> {
-    /// `a . c`.
-    pub along: T,
-    /// `sqrt(L) a x b1`, `sqrt(L) a x b2` and `L a`.
-    pub across: [Vec3<T>; 3],
-}
-
-impl<T: Real> Direction<T> {
-    pub fn squared(&self) -> T {
-        self.dot(self)
-    }
-
-    fn dot(&self, other: &Self) -> T {
-        let across = self.across.iter().zip(&other.across);
-        across.fold(self.along * other.along, |sum, (a, b)| sum + a.dot(*b))
-    }
-}
-
-impl<T: Real> std::ops::Mul<T> for Direction<T> {
-    type Output = Self;
-    fn mul(self, factor: T) -> Self {
-        Self {
-            along: self.along * factor,
-            across: self.across.map(|a| a * factor),
-        }
-    }
-}
-
-impl<T: Real> std::ops::Sub for Direction<T> {
-    type Output = Self;
-    fn sub(self, other: Self) -> Self {
-        let [a, b, c] = self.across;
-        let [d, e, f] = other.across;
-        Self {
-            along: self.along - other.along,
-            across: [a - d, b - e, c - f],
-        }
-    }
-}
-
-impl<T: Real> Threshold<T> {
-    pub fn complement(self) -> Self {
-        Self {
-            z: -self.z,
-            far: !self.far,
-            direction: self.direction * -T::one(),
-        }
-    }
-}
+use super::polytope::polytope;
+use super::real::Real;
+use super::threshold::{PHI_ONE, Threshold};
 
 /// How two variables depend on each other.
 #[derive(Debug, Clone, Copy)]
@@ -125,12 +62,16 @@ pub fn orthant<T: Real>(thresholds: impl Iterator<Item = Threshold<T>>) -> T {
         let by_z = a.z.partial_cmp(&b.z).unwrap_or(std::cmp::Ordering::Equal);
         by_z.then(b.far.cmp(&a.far))
     });
+    if open.len() > 3 {
+        // Planes that leave all but nothing have no say in how a polytope is sliced.
+        open.retain(|t| t.z < T::of(PHI_ONE));
+    }
     match &open[..] {
         [] => one,
         [one] => one.z.phi(),
         [a, b] => both_positive(a.z, b.z, Correlation::from_thresholds(a, b)),
         [a, b, c] => three_positive([a, b, c]),
-        many => many_positive(many),
+        many => polytope(many),
     }
 }
 
@@ -242,125 +183,5 @@ fn three_positive<T: Real>(open: [&Threshold<T>; 3]) -> T {
     estimate.max(low).max(zero).min(high)
 }
 
-/// The chance that four or more variables are positive, of which the strictest comes first.
-fn many_positive<T: Real>(open: &[Threshold<T>]) -> T {
-    let tiny = T::of(1e-6);
-    let both = |i: usize, j: usize| {
-        both_positive(
-            open[i].z,
-            open[j].z,
-            Correlation::from_thresholds(&open[i], &open[j]),
-        )
-    };
-    // The strictest of the other kind, if there is one.
-    let other = open.iter().position(|t| t.far != open[0].far);
-    let mut low = other.map_or(open[0].z.phi(), |other| both(0, other));
-    let (mut high, mut share) = (T::one(), T::one());
-    for (j, t) in open.iter().enumerate() {
-        let p = t.z.phi().max(tiny);
-        share = share * p;
-        for (i, before) in open[..j].iter().enumerate() {
-            let pair = both(i, j);
-            high = high.min(pair);
-            share = share * pair / (p * before.z.phi().max(tiny));
-        }
-        // In the tree each one hangs on the strictest of its kind, and the strictest of one kind on that of the other.
-        let first = if t.far == open[0].far { Some(0) } else { other };
-        if let Some(first) = first.filter(|&first| first != j) {
-            low = low + both(first, j) - open[first].z.phi();
-        }
-    }
-    share.max(low).max(T::zero()).min(high)
-}
-
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::real::vec3;
-    use std::f64::consts::{PI, TAU};
-
-    /// A variable whose direction is that of a vector.
-    fn threshold(z: f64, v: [f64; 3]) -> Threshold<f64> {
-        let v = vec3(v[0], v[1], v[2]);
-        Threshold {
-            z,
-            far: v.x >= 0.0,
-            direction: Direction {
-                along: v.x / v.length(),
-                across: [
-                    vec3(v.y, v.z, 0.0) * (1.0 / v.length()),
-                    Vec3::zero(),
-                    Vec3::zero(),
-                ],
-            },
-        }
-    }
-
-    /// Two of them with a given correlation.
-    fn pair(h: f64, k: f64, rho: f64) -> f64 {
-        let turned = [rho, (1.0 - rho * rho).sqrt(), 0.0];
-        orthant([threshold(h, [1.0, 0.0, 0.0]), threshold(k, turned)].into_iter())
-    }
-
-    #[test]
-    fn two_variables_have_their_known_chances() {
-        for rho in [
-            -1.0, -0.99999, -0.95, -0.9, -0.5, 0.0, 0.3, 0.9, 0.91, 0.999, 1.0,
-        ] {
-            let known = 0.25 + f64::asin(rho) / TAU;
-            let found = pair(0.0, 0.0, rho);
-            assert!((found - known).abs() < 1e-6, "{rho}: {found}, {known}");
-        }
-        // The expected chance sums up h's density times the chance that k follows, in a million steps.
-        for (h, k) in [
-            (0.5, -0.3),
-            (1.0, 1.02),
-            (-1.0, 0.9),
-            (2.0, -2.1),
-            (3.0, 1.0),
-        ] {
-            for rho in [-0.999, -0.93, -0.6, 0.2, 0.85, 0.92, 0.9999] {
-                let steps = 1_000_000;
-                let width = (h + 8.5) / f64::from(steps);
-                let chance = |i: i32| {
-                    let x = -h + (f64::from(i) + 0.5) * width;
-                    (-0.5 * x * x).exp() * ((k + rho * x) / f64::sqrt(1.0 - rho * rho)).phi()
-                };
-                let sum: f64 = (0..steps).map(chance).sum::<f64>() * width / TAU.sqrt();
-                assert!((pair(h, k, rho) - sum).abs() < 1e-6, "{h} {k} {rho}");
-            }
-        }
-    }
-
-    #[test]
-    fn three_variables_are_close_to_their_known_chances() {
-        // Without means the chance is 1/8 and the sum of the correlations' arcsines over 4 pi.
-        let (mut worst, mut sum) = (0.0_f64, 0.0);
-        for i in 0..1000 {
-            let turn = |j: i32| f64::from(i * j) * 0.618_034 * TAU;
-            let v = [3, 5, 7].map(|j| [turn(j).sin(), turn(j + 1).cos(), turn(j + 20).sin()]);
-            let cosine = |a: usize, b: usize| {
-                let of = |v: [f64; 3]| vec3(v[0], v[1], v[2]);
-                of(v[a]).dot(of(v[b])) / (of(v[a]).length() * of(v[b]).length())
-            };
-            let angles = cosine(0, 1).asin() + cosine(0, 2).asin() + cosine(1, 2).asin();
-            let known = 0.125 + angles / (4.0 * PI);
-            let found = orthant(v.map(|v| threshold(0.0, v)).into_iter());
-            worst = worst.max((found - known).abs());
-            sum += (found - known).abs();
-        }
-        assert!(
-            worst < 0.03 && sum / 1000.0 < 0.01,
-            "{worst}, on average {}",
-            sum / 1000.0
-        );
-    }
-
-    #[test]
-    fn full_correlation_is_one_threshold() {
-        let (far, near) = ([1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]);
-        let set = [(0.7, far), (1.5, near), (0.2, far), (1.1, near), (0.2, far)];
-        let share = orthant(set.map(|(z, v)| threshold(z, v)).into_iter());
-        assert!((share - (0.2.phi() + 1.1.phi() - 1.0)).abs() < 1e-15);
-    }
-}
+mod tests;

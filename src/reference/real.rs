@@ -77,6 +77,16 @@ impl<T: Real> Vec3<T> {
         self.dot(self)
     }
 
+    /// A unit vector across a unit vector.
+    pub fn perpendicular(self) -> Self {
+        let (zero, one) = (T::zero(), T::one());
+        let across = match self.x.abs() < T::of(0.7) {
+            true => self.cross(vec3(one, zero, zero)),
+            false => self.cross(vec3(zero, one, zero)),
+        };
+        across * (one / across.length())
+    }
+
     pub fn length(self) -> T {
         self.squared().sqrt()
     }

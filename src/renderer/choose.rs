@@ -1,8 +1,8 @@
-//! Choices that suit a device: how splats become pixels on it, and how its sort is divided.
+//! Choices that suit a device: how splats become pixels on it, how its sort is divided, and how buffers are reached.
 
 use rara_base::error::{Error, Result};
 use rara_base::limits;
-use rara_gpu::{DeviceShape, Support};
+use rara_gpu::{Bindings, Device, DeviceShape, Support};
 use rara_scene::settings::{Raster, Settings};
 
 /// The properties of a host's targets that decide whether tiles can draw into them.
@@ -33,15 +33,15 @@ pub(super) fn raster(
     Ok(match settings.raster {
         _ if targets.converted && !can_tile => {
             return Err(Error::Invalid(
-                "where splats and host are not both linear light (ColorSpace::Linear, Training::linear), the picture is \
-                 made by tiles alone, since quads blend into the host's own target; leave the raster to itself, and make \
-                 the host's depth readable (DepthDesc::readable)"
+                "either the scene (Training::linear) or the host (ColorSpace::Linear) has colours in linear light, and only \
+                 tiles can convert them for the other; use Raster::Auto or Raster::Tiles, and make the host's depth readable \
+                 (DepthDesc::readable)"
                     .into(),
             ));
         }
         _ if needs_tiles && !can_tile => {
             return Err(Error::Invalid(format!(
-                "Show::{:?} is made by tiles alone; leave the raster to itself, and make the host's depth readable",
+                "only tiles can draw Show::{:?}; use Raster::Auto or Raster::Tiles, and make the host's depth readable",
                 settings.show
             )));
         }
@@ -63,10 +63,7 @@ pub(super) fn raster(
         Raster::Auto if targets.multisampled => {
             (draws, "a GPU, and a target of several samples a pixel")
         }
-        Raster::Auto => (
-            Raster::Tiles,
-            "a GPU, for which tiles are predicted to be faster",
-        ),
+        Raster::Auto => (Raster::Tiles, "a GPU, on which tiles are faster"),
         chosen => (chosen, "asked for"),
     })
 }
@@ -89,83 +86,17 @@ pub(super) fn runs(shape: DeviceShape, gaussians: u32) -> u32 {
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn chosen(shape: DeviceShape, mesh_shader: bool, targets: Targets) -> Raster {
-        let mut support = Support::default();
-        support.mesh_shader = mesh_shader;
-        let settings = Settings::default();
-        let (raster, reason) = raster(&settings, &support, shape, targets).expect("a choice");
-        assert!(!reason.is_empty());
-        raster
-    }
-
-    #[test]
-    fn linear_light_without_tiles_is_refused() {
-        let targets = Targets {
-            tiles: 1000,
-            hidden: false,
-            multisampled: false,
-            converted: true,
-        };
-        let hidden = Targets {
-            hidden: true,
-            ..targets
-        };
-        let (usual, support) = (Settings::default(), Support::default());
-        for (settings, targets) in [(usual.raster(Raster::Quad), targets), (usual, hidden)] {
-            let refused = raster(&settings, &support, DeviceShape::Cpu, targets);
-            let text = refused.expect_err("quads").to_string();
-            assert!(text.contains("ColorSpace::Linear"), "{text}");
-        }
-    }
-
-    #[test]
-    fn tiles_are_chosen_where_they_can_draw() {
-        let gpu = DeviceShape::Gpu { subgroup: 32 };
-        let usual = Targets {
-            tiles: 1000,
-            hidden: false,
-            multisampled: false,
-            converted: false,
-        };
-        let hidden = Targets {
-            hidden: true,
-            ..usual
-        };
-        let multisampled = Targets {
-            multisampled: true,
-            ..usual
-        };
-        let large = Targets {
-            tiles: 1 << 21,
-            ..usual
-        };
-        for mesh_shader in [false, true] {
-            assert_eq!(chosen(gpu, mesh_shader, usual), Raster::Tiles);
-            let draws = if mesh_shader {
-                Raster::Mesh
-            } else {
-                Raster::Quad
-            };
-            for targets in [hidden, multisampled, large] {
-                assert_eq!(chosen(gpu, mesh_shader, targets), draws, "{targets:?}");
-            }
-            assert_eq!(chosen(DeviceShape::Cpu, mesh_shader, usual), Raster::Tiles);
-            let linear = Targets {
-                converted: true,
-                ..multisampled
-            };
-            assert_eq!(chosen(gpu, mesh_shader, linear), Raster::Tiles);
-            assert_eq!(
-                chosen(DeviceShape::Cpu, mesh_shader, multisampled),
-                Raster::Tiles
-            );
-            for targets in [hidden, large] {
-                assert_eq!(chosen(DeviceShape::Cpu, mesh_shader, targets), Raster::Quad);
-            }
-        }
+/// How buffers are reached: as wanted, unless the device cannot bind buffers as large as this one, bytes.
+pub(super) fn bindings(device: &Device, wanted: Bindings, largest: u64) -> Bindings {
+    let support = device.support();
+    let binds = support.push_descriptor && largest <= support.max_storage_buffer_range;
+    match wanted {
+        Bindings::Bound if binds => Bindings::Bound,
+        // The constants are small.
+        Bindings::Mixed if support.push_descriptor => Bindings::Mixed,
+        _ => Bindings::Address,
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -5,44 +5,48 @@ use std::sync::Arc;
 use ash::vk;
 
 use super::choose;
+use super::cut::check_device;
 use super::desc::ColorSpace;
-use super::frame::FrameState;
+use super::frame::{FrameCut, FrameState};
 use super::frames::{Decision, RecordedFrame};
 use super::outcome::Submission;
 use super::pair_room::Retry;
-use super::request::FrameRequest;
-use super::{ConfiguredFrame, Renderer};
+use super::request::{FrameRequest, Kept};
+use super::{ConfiguredFrame, Renderer, out_of_order};
 use crate::passes::{
-    Occluders, Plan, PreviousFrame, SceneBuffers, SceneFacts, SceneLayer, SplatColours, Targets,
-    TilePixels, TileWork, Work,
+    CutPlan, EyeFacts, EyePlan, Occluders, PreviousFrame, SceneBuffers, Sizes, SplatColours,
+    Targets, TilePixels, TileWork, Work,
 };
 use rara_base::error::{Error, Result};
 use rara_base::limits;
 use rara_gpu::Bindings;
 use rara_scene::camera::Camera;
-use rara_scene::clip::Clip;
 use rara_scene::depth::DepthMap;
-use rara_scene::precision::ShFormat;
 use rara_scene::settings::{Raster, Settings};
 
 impl Renderer {
     /// Decides what a frame needs, and allocates and compiles the missing parts. The camera's picture is the
     /// viewport that [`draw`](Self::draw) sets. [`Settings::background`] is the host's business and ignored here.
     ///
+    /// A frame that is given a clip cuts the scene for itself. One that is given a [`Cut`](super::Cut) of the scene shows
+    /// that, and its [`prepare`](Self::prepare) comes after [`Cut::prepare`](super::Cut::prepare).
+    ///
     /// Where a frame needs more memory than the one before, old and new exist side by side while frames are in flight, or as
     /// long as the host holds a frame that needs the old; else the old goes first.
     ///
     /// # Errors
     /// [`Error::Invalid`] for what no frame can show, [`Error::Memory`] and [`Error::Budget`] where there is no room for it,
-    /// and [`Error::Device`] where the driver fails.
-    pub fn configure(
+    /// and [`Error::Device`] where the driver fails. [`Error::Invalid`] also for a cut that is not configured or is another
+    /// scene's, and for a cut with a camera that has near or far planes, which would cut as well.
+    pub fn configure<'a>(
         &mut self,
-        scene: &SceneBuffers,
-        camera: &Camera,
-        clip: &Clip,
-        settings: &Settings,
+        scene: &'a SceneBuffers,
+        camera: &'a Camera,
+        kept: impl Into<Kept<'a>>,
+        settings: &'a Settings,
     ) -> Result<ConfiguredFrame> {
-        self.configure_frame(&FrameRequest::in_flight(scene, camera, clip, settings))
+        let kept = kept.into();
+        self.configure_frame(&FrameRequest::in_flight(scene, camera, kept, settings))
     }
 
     /// As [`configure`](Self::configure), for a frame that is submitted as the request says.
@@ -51,19 +55,25 @@ impl Renderer {
         request: &FrameRequest<'_>,
     ) -> Result<ConfiguredFrame> {
         let mut decision = self.decide_with_memory(request)?;
-        let work = self.work(decision.scene, &decision.plan)?;
-        decision.plan.work = work;
+        self.take_over(request.kept, decision.scene, &mut decision.plan)?;
         let (targets, plan) = (decision.targets, &decision.plan);
         let buffers = self.memory.buffers().clone();
+        let cut = match request.kept {
+            Kept::Clip(_) => FrameCut::Own(self.cut.memory.buffers().clone()),
+            Kept::Cut(cut) => FrameCut::Seen(cut.configured_with(request.scene)?.seen.clone()),
+        };
         // An earlier frame may have made the buffers larger than this one needs.
-        let bindings = self.bindings_of(buffers.sizes().largest().max(request.scene.largest()));
-        let pipelines = &mut self.pipelines;
-        decision.is_first_use = pipelines.ensure(&self.device, bindings, targets, plan)?;
+        let of_cut = cut.buffers().sizes().largest();
+        let largest = buffers.sizes().largest().max(of_cut);
+        let bindings = self.bindings_of(largest.max(request.scene.largest()));
+        let needs = |need: &mut dyn FnMut(_)| plan.pipelines(targets, need);
+        decision.is_first_use = self.pipelines.ensure(&self.device, bindings, &needs)?;
         let frame = ConfiguredFrame {
             state: FrameState {
                 decision,
+                cut,
                 buffers,
-                pipelines: pipelines.get(bindings).clone(),
+                pipelines: self.pipelines.get(bindings).clone(),
                 renderer: self.id,
             },
             prepared: self.frames.prepared(),
@@ -73,35 +83,48 @@ impl Renderer {
         Ok(frame)
     }
 
-    /// True when the frame of a request needs a pipeline that no renderer has made yet, which may take seconds.
-    #[cfg_attr(not(feature = "view"), allow(dead_code))]
-    pub(crate) fn compiles(&mut self, request: &FrameRequest<'_>) -> Result<bool> {
+    /// True when [`configure`](Self::configure) would have to compile shaders for such a frame, which may take seconds, so that a
+    /// host can say so before.
+    ///
+    /// # Errors
+    /// The errors of [`configure`](Self::configure), but those of memory.
+    pub fn compiles<'a>(
+        &mut self,
+        scene: &'a SceneBuffers,
+        camera: &'a Camera,
+        kept: impl Into<Kept<'a>>,
+        settings: &'a Settings,
+    ) -> Result<bool> {
+        let request = &FrameRequest::in_flight(scene, camera, kept.into(), settings);
         let mut plan = self.decide(request)?.plan;
-        if self.memory.fits(&plan) {
-            plan.work = self.work(request.scene.id, &plan)?;
+        if self.memory.fits(&plan) && self.cut.memory.fits(&plan.cut) {
+            self.take_over(request.kept, request.scene.id, &mut plan)?;
         }
         let held = self.memory.allocated().map(|held| held.sizes().largest());
-        let needed = plan.sizes().largest().max(held.unwrap_or(0));
+        let of_cut = self.cut.memory.allocated();
+        let held = held.max(of_cut.map(|held| held.sizes().largest()));
+        let needed = largest(&plan).max(held.unwrap_or(0));
         let bindings = self.bindings_of(needed.max(request.scene.largest()));
         let targets = self.targets(request.draws_linear());
-        Ok(!self.pipelines.has_all(bindings, targets, &plan))
+        let needs = |need: &mut dyn FnMut(_)| plan.pipelines(targets, need);
+        Ok(!self.pipelines.has_all(bindings, &needs))
     }
 
     /// Decides what a frame computes. It has no memory yet, so that it takes nothing over.
     fn decide(&mut self, request: &FrameRequest<'_>) -> Result<Decision> {
         let request = &FrameRequest {
             camera: &request.camera.in_scene(&self.placement),
-            clip: &request.clip.in_scene(&self.placement),
             ..*request
         };
-        let scene = request.scene;
-        if !scene.is_on(&self.device) {
-            return Err(Error::Invalid(
-                "the scene was uploaded to another device than the renderer's".into(),
-            ));
-        }
-        self.memory
-            .free_finished(self.frames.finished(request.submission));
+        check_device(request.scene, &self.device)?;
+        // Of a cut the layers are as they were when it was configured.
+        let scene = match request.kept {
+            Kept::Clip(_) => request.scene,
+            Kept::Cut(cut) => &cut.configured_with(request.scene)?.scene,
+        };
+        let finished = self.frames.finished(request.submission);
+        self.memory.free_finished(finished);
+        self.cut.memory.free_finished(finished);
         let tiles = tiles_of(request.camera.width, request.camera.height);
         // Where no quads can take the tiles' place, nothing does.
         let targets = self.targets(request.draws_linear());
@@ -118,26 +141,36 @@ impl Renderer {
         if let Some(map) = &depth_map {
             map.check(request.camera.projection)?;
         }
-        let facts = SceneFacts {
-            blocks: scene.block_count(),
-            reordered: scene.reordered,
-            sh_degree: scene.sh_degree,
-            sh_format: scene.sh_format,
+        let facts = scene.facts(self.device.shape());
+        let eye = EyeFacts {
             picture,
-            pair_capacity: self.memory.pairs.room(),
+            pair_capacity: self.pairs.room(),
             redrawn,
             whole: request.whole,
             colours: request.colours,
-            ..self.facts(scene.layers(), scene.count, raster, depth_map)
+            ..self.facts(scene.count, raster, depth_map)
+        };
+        let (camera, settings) = (request.camera, request.settings);
+        let cut = match request.kept {
+            Kept::Clip(clip) => {
+                let clip = clip.in_scene(&self.placement);
+                CutPlan::new(facts, Some(camera), &clip, settings)?
+            }
+            Kept::Cut(_) if camera.clips() => {
+                return out_of_order(
+                    "configure was given a cut and a camera whose near or far plane cuts too: put the planes into the clip of \
+                     the cut, or give the renderer the clip",
+                );
+            }
+            Kept::Cut(cut) => cut.configured_with(request.scene)?.plan.clone(),
         };
         Ok(Decision {
             scene: scene.id,
-            plan: Plan::new(facts, request.camera, request.clip, request.settings)?,
+            plan: EyePlan::new(facts, cut, eye, camera, settings)?,
             reason,
             targets,
             depth_map,
             unit: self.placement.scale(),
-            submission: request.submission,
             redrawn,
             needs_tiles,
             is_first_use: false,
@@ -156,28 +189,62 @@ impl Renderer {
             if settings.raster != request.settings.raster {
                 decision.reason = "the device has no memory for the tiles' lists";
             }
-            let plan = &decision.plan;
-            if self.memory.fits(plan) {
-                return Ok(decision);
-            }
-            if let Some(previous) = &mut self.previous {
-                previous.holds = false;
-            }
-            let frames = (
-                self.frames.prepared(),
-                self.frames.finished(request.submission),
-            );
-            let memory = &mut self.memory;
-            let Err(error) = memory.replace(&self.device, plan, frames) else {
+            let Err(error) = self.make_memory(request, &decision.plan) else {
                 return Ok(decision);
             };
-            let (has_lists, can_be_quads) = (plan.is_tiled(), !decision.needs_tiles);
+            let (has_lists, can_be_quads) = (decision.plan.is_tiled(), !decision.needs_tiles);
             let budget = self.device.memory_budget();
-            match memory.pairs.retry(error, budget, has_lists, can_be_quads)? {
+            match self.pairs.retry(error, budget, has_lists, can_be_quads)? {
                 Retry::Smaller => {}
                 Retry::Quads => settings.raster = Raster::Quad,
             }
         }
+    }
+
+    /// Makes the memory of a plan where it does not fit into what there is.
+    fn make_memory(&mut self, request: &FrameRequest<'_>, plan: &EyePlan) -> Result<()> {
+        let frames = (
+            self.frames.prepared(),
+            self.frames.finished(request.submission),
+        );
+        let owns_cut = matches!(request.kept, Kept::Clip(_));
+        let of_cut = (owns_cut && !self.cut.memory.fits(&plan.cut)).then(|| Sizes::new(&plan.cut));
+        let of_eye = (!self.memory.fits(plan)).then(|| Sizes::new(plan));
+        match (&of_cut, &of_eye) {
+            (None, None) => Ok(()),
+            _ => self.grow(plan, of_cut, of_eye, frames),
+        }
+    }
+
+    /// Makes room for cuts and frames of these sizes. Where the budget has none for both, the buffers are as they were.
+    pub(super) fn grow(
+        &mut self,
+        plan: &EyePlan,
+        of_cut: Option<Sizes<CutPlan>>,
+        of_eye: Option<Sizes<EyePlan>>,
+        frames: (u64, u64),
+    ) -> Result<()> {
+        let cut = of_cut.as_ref().map_or([0; 2], |sizes| {
+            self.cut.memory.change(&plan.cut, sizes, frames)
+        });
+        let eye = of_eye
+            .as_ref()
+            .map_or([0; 2], |sizes| self.memory.change(plan, sizes, frames));
+        let [missing, goes] = [0, 1].map(|at| cut[at] + eye[at]);
+        self.device
+            .check_budget("a frame's working memory", missing, goes)?;
+        if let Some(sizes) = of_cut {
+            self.cut.found = None;
+            let cut = (&plan.cut, sizes);
+            self.cut.memory.reserve(&self.device, cut, frames)?;
+        }
+        if let Some(sizes) = of_eye {
+            if let Some(previous) = &mut self.previous {
+                previous.holds = false;
+            }
+            self.memory.reserve(&self.device, (plan, sizes), frames)?;
+        }
+        Ok(())
     }
 
     /// How splats become pixels in a picture of so many tiles, and why in that way.
@@ -213,24 +280,16 @@ impl Renderer {
         }
     }
 
-    /// A plan's arguments for so many Gaussians of these layers, as far as they follow from device and description.
+    /// The arguments of an eye's plan for so many Gaussians, as far as they follow from device and description.
     pub(super) fn facts<'a>(
         &self,
-        layers: &'a [SceneLayer],
         gaussians: u32,
         raster: Raster,
         depth_map: Option<DepthMap>,
-    ) -> SceneFacts<'a> {
+    ) -> EyeFacts<'a> {
         let shape = self.device.shape();
         let readable = self.desc.depth.filter(|depth| depth.readable);
-        SceneFacts {
-            layers,
-            gaussians,
-            blocks: 0,
-            reordered: true,
-            sh_degree: 0,
-            sh_format: ShFormat::default(),
-            shape,
+        EyeFacts {
             sort_runs: choose::runs(shape, gaussians),
             span_runs: choose::runs(shape, gaussians),
             raster,
@@ -259,48 +318,63 @@ impl Renderer {
         }
         let (fell_back, needed) = self.frames.awaited(request.submission);
         let budget = self.device.memory_budget();
-        let has_grown = self.memory.make_room(request, tiles, needed, budget);
+        let had = self.pairs.room();
+        self.pairs.review(budget);
+        self.pairs.make(request.scene.count, tiles, needed);
+        if matches!(request.settings.raster, Raster::Auto | Raster::Tiles) && !self.pairs.is_fixed()
+        {
+            let whole = request.whole.unwrap_or(request.camera);
+            let expected = self.estimate.update(request.scene, request.camera, whole);
+            self.pairs.expect(expected);
+        }
+        let has_grown = self.pairs.room() > had;
         // Where no more room can be made, quads are drawn at once.
         request.submission == Submission::Awaited && (!fell_back || has_grown)
     }
 
-    /// The part of a plan that has to be computed after the frame before it.
-    fn work(&mut self, scene: u64, plan: &Plan) -> Result<Work> {
-        // The host's depth may change with each frame, and a frame that is yet to be prepared leaves other results.
+    /// Finds the part of a plan that has to be computed after the frame before it.
+    fn take_over(&mut self, kept: Kept<'_>, scene: u64, plan: &mut EyePlan) -> Result<()> {
+        // A frame that is yet to be prepared leaves other results.
         let is_next = Arc::strong_count(&self.pending) == 1;
+        let finds_sides = plan.cut.clips() && !(is_next && self.cut.has_found(scene, &plan.cut));
+        // The host's depth may change with each frame.
         let previous = self.previous.as_ref();
         let previous = previous.filter(|_| is_next && plan.occluders.is_none());
-        let work = PreviousFrame::work(previous, scene, plan);
-        if !matches!(work, Work::Reclip { .. }) {
-            return Ok(work);
-        }
-        let reclipped = Plan {
-            work,
-            ..plan.clone()
-        };
-        let prepared = self.frames.prepared();
-        match self.memory.extend(&self.device, &reclipped, prepared) {
-            Ok(()) => Ok(work),
-            // A whole frame needs less memory than a reclipped one.
-            Err(Error::Memory(_) | Error::Budget(_)) => {
-                self.previous = None;
-                Ok(PreviousFrame::work(None, scene, plan))
+        plan.work = PreviousFrame::work(previous, scene, plan);
+        if matches!(kept, Kept::Cut(_)) {
+            // What other eyes see too does not move over one of them.
+            plan.cut.finds_sides = false;
+            if matches!(plan.work, Work::Reclip { .. }) {
+                plan.work = Work::Whole;
             }
-            Err(error) => Err(error),
+            return Ok(());
         }
+        if matches!(plan.work, Work::Reclip { .. }) {
+            let prepared = self.frames.prepared();
+            match self.memory.extend(&self.device, plan, prepared) {
+                Ok(()) => {}
+                // A whole frame needs less memory than a reclipped one.
+                Err(Error::Memory(_) | Error::Budget(_)) => {
+                    self.previous = None;
+                    plan.work = Work::Whole;
+                }
+                Err(error) => return Err(error),
+            }
+        }
+        plan.cut.finds_sides = finds_sides && plan.work == Work::Whole;
+        Ok(())
     }
 
-    /// How buffers are reached: as wanted, unless the device cannot bind buffers as large as this one.
+    /// How buffers are reached, the largest of which has so many bytes.
     pub(super) fn bindings_of(&self, largest: u64) -> Bindings {
-        let support = self.device.support();
-        let binds = support.push_descriptor && largest <= support.max_storage_buffer_range;
-        match self.desc.bindings {
-            Bindings::Bound if binds => Bindings::Bound,
-            // The constants are small.
-            Bindings::Mixed if support.push_descriptor => Bindings::Mixed,
-            _ => Bindings::Address,
-        }
+        choose::bindings(&self.device, self.desc.bindings, largest)
     }
+}
+
+/// The largest buffer of a plan, bytes.
+fn largest(plan: &EyePlan) -> u64 {
+    let [of_eye, of_cut] = [Sizes::new(plan).largest(), Sizes::new(&plan.cut).largest()];
+    of_eye.max(of_cut)
 }
 
 /// True where only tiles make what settings ask for, so that no quads can take their place.

@@ -7,16 +7,16 @@ use rara_base::setters;
 use rara_gpu::{Attachments, Bindings, DepthAttachment, Device, Target};
 use rara_scene::depth::DepthMap;
 
-/// What the numbers of a host's colour attachment stand for. Splats are trained, and blended, as a display stores colours: by
-/// the curve of sRGB. What meets the host's pixels is then theirs.
+/// The encoding of the colours in a host's colour attachment. Splats are trained, and blended, in sRGB-encoded colours; the
+/// result is converted to the encoding of the host.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[non_exhaustive]
 pub enum ColorSpace {
-    /// Colours as they are stored, for a host that draws its own like that: they meet its pixels as they are.
+    /// The attachment has sRGB-encoded colours. Splats are blended over its pixels without a conversion.
     #[default]
     Stored,
-    /// Linear light, as of a host that lights in HDR and encodes its picture afterwards: splats are blended as stored, the
-    /// picture that they make is turned into linear light once, and that is blended `over` the host's pixels. Only tiles do
+    /// The attachment has linear light, as in a host that lights in HDR and encodes its picture afterwards. Splats are blended
+    /// as stored; the resulting picture is converted to linear light once and blended `over` the host's pixels. Only tiles do
     /// so: another [`Raster`](crate::Raster) is refused, and so is a depth that is not [readable](DepthDesc::readable). A frame
     /// whose tiles have no room draws nothing, as [`fell_back`](super::Renderer::fell_back) says.
     /// [`Show::Count`](crate::Show::Count), [`Show::Mean`](crate::Show::Mean) and [`Show::Strongest`](crate::Show::Strongest),
@@ -66,7 +66,7 @@ setters! {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct DepthDesc {
-    /// Its format, with or without stencil.
+    /// The format of the attachment, with or without stencil.
     pub format: vk::Format,
     /// True when a dynamic rendering scope has the same image as stencil attachment too.
     pub stencil: bool,
@@ -166,7 +166,7 @@ impl RendererDesc {
     pub(super) fn check(&self, device: &Device) -> Result<()> {
         if !(1..=Self::MAX_FRAMES).contains(&self.frames_in_flight) {
             return Err(Error::Invalid(format!(
-                "RendererDesc::frames_in_flight is {}: from 1 to {} can be",
+                "RendererDesc::frames_in_flight is {}; it must be from 1 to {}",
                 self.frames_in_flight,
                 Self::MAX_FRAMES
             )));

@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
+use super::cut::SeenCut;
 use super::frames::Decision;
-use crate::passes::{Buffers, Pipelines, TilePicture, tiles};
+use crate::passes::{Buffers, CutPlan, EyePlan, Pipelines, TilePicture, tiles};
 use crate::stats::RasterChoice;
 
 /// A frame that [`Renderer::configure`](super::Renderer::configure) has configured and
@@ -31,10 +32,28 @@ pub struct PreparedFrame {
 #[derive(Debug)]
 pub(super) struct FrameState {
     pub(super) decision: Decision,
-    pub(super) buffers: Arc<Buffers>,
+    /// The buffers of the renderer's own cut, or a host's cut.
+    pub(super) cut: FrameCut,
+    pub(super) buffers: Arc<Buffers<EyePlan>>,
     pub(super) pipelines: Arc<Pipelines>,
     /// The number of its renderer.
     pub(super) renderer: u64,
+}
+
+/// The cut that a frame shows.
+#[derive(Debug)]
+pub(super) enum FrameCut {
+    Own(Arc<Buffers<CutPlan>>),
+    Seen(SeenCut),
+}
+
+impl FrameCut {
+    pub(super) fn buffers(&self) -> &Arc<Buffers<CutPlan>> {
+        match self {
+            Self::Own(buffers) => buffers,
+            Self::Seen(cut) => &cut.buffers,
+        }
+    }
 }
 
 impl ConfiguredFrame {
@@ -48,8 +67,9 @@ impl ConfiguredFrame {
         self.state.decision.raster(false)
     }
 
-    /// True when its pixels are those of the frame that was prepared last.
-    pub(crate) fn changes_nothing(&self) -> bool {
+    /// True when its pixels are those of the frame that was prepared last, so that a host whose own picture is unchanged may
+    /// leave it out.
+    pub fn changes_nothing(&self) -> bool {
         self.state.decision.changes_nothing()
     }
 

@@ -1,8 +1,10 @@
 //! The frames that may be unfinished at once, and what is known of each once it was waited for.
 
+use std::sync::Arc;
+
 use super::outcome::Submission;
-use crate::passes::{Plan, Targets, Work};
-use crate::types::{self, FrameCounts};
+use crate::passes::{Buffers, CutPlan, EyePlan, Targets, Work};
+use crate::types::FrameCounts;
 use rara_base::error::Result;
 use rara_gpu::{Buffer, BufferDesc, Device, Location, Timer};
 use rara_scene::depth::DepthMap;
@@ -12,7 +14,7 @@ use rara_scene::depth::DepthMap;
 pub(super) struct Decision {
     /// The scene's number.
     pub(super) scene: u64,
-    pub(super) plan: Plan,
+    pub(super) plan: EyePlan,
     /// Why splats become pixels in the plan's way.
     pub(super) reason: &'static str,
     pub(super) targets: Targets,
@@ -20,7 +22,6 @@ pub(super) struct Decision {
     pub(super) depth_map: Option<DepthMap>,
     /// World units in one of the scene's.
     pub(super) unit: f64,
-    pub(super) submission: Submission,
     /// True when nothing is drawn of it without room for its pairs of tile and splat.
     pub(super) redrawn: bool,
     /// True when only tiles show what is asked for, so that no quads can take their place.
@@ -31,9 +32,9 @@ pub(super) struct Decision {
 
 impl Decision {
     /// True when it takes something over from the frame before.
-    pub(super) fn takes_over(&self) -> bool {
-        let clip = self.plan.mode() != types::MODE_NONE;
-        self.plan.work != Work::Whole { clip }
+    pub(super) fn takes_over(&self, owns_cut: bool) -> bool {
+        let cut = &self.plan.cut;
+        self.plan.work != Work::Whole || (owns_cut && cut.clips() && !cut.finds_sides)
     }
 
     /// True when its pixels are those of the frame before it.
@@ -50,6 +51,8 @@ pub(crate) struct RecordedFrame {
     pub(super) counts: Buffer,
     /// The recorded frame; `None` before the first one, and for one that was never submitted.
     pub(super) decision: Option<Decision>,
+    /// What it uses of a cut of the host's.
+    pub(super) cut: Option<Arc<Buffers<CutPlan>>>,
 }
 
 impl RecordedFrame {
@@ -70,6 +73,7 @@ impl RecordedFrame {
             timer: timing.then(timer).transpose()?,
             counts,
             decision: None,
+            cut: None,
         })
     }
 }
@@ -88,6 +92,13 @@ impl FramesInFlight {
             slots: slots.collect::<Result<_>>()?,
             prepared: 0,
         })
+    }
+
+    /// Gives back what frames use of hosts' cuts, once all of them are finished.
+    pub(super) fn release_cuts(&mut self) {
+        for slot in &mut self.slots {
+            slot.cut = None;
+        }
     }
 
     /// The slot for one more frame.

@@ -26,8 +26,7 @@ setters! {
         pub layers: u32,
         /// How the scenes' spherical harmonics are stored.
         pub sh_format: ShFormat,
-        /// Planes of a clip that is a list of planes; [`Camera::clip_near`] and [`Camera::clip_far`] add one each. Of more than
-        /// [`Clip::MAX_SURFACES`] it is a combination.
+        /// Planes of a clip that is a list of planes; [`Camera::clip_near`] and [`Camera::clip_far`] add one each.
         pub planes: u32,
         /// Surfaces of a clip that bends or combines; 0 for none.
         pub surfaces: u32,
@@ -82,9 +81,10 @@ impl FrameLimits {
             ));
         }
         let most = self.planes.max(self.surfaces);
-        if most > MOST_SURFACES {
+        if most as usize > Clip::MAX_SURFACES {
             return refuse(format!(
-                "planes or surfaces is {most}: a clip has {MOST_SURFACES} at most"
+                "planes or surfaces is {most}: a clip has {} at most",
+                Clip::MAX_SURFACES
             ));
         }
         if let Some(pairs) = self.pairs.filter(|&pairs| pairs > pair_room::MOST) {
@@ -100,34 +100,28 @@ impl FrameLimits {
     }
 
     /// A clip of each kind that pipelines and buffers tell apart: none, and lists of planes and combinations of one surface,
-    /// of several, and of so many that blocks have shortlists of them.
+    /// of several, of so many that blocks have shortlists of them, and of so many that splats have long records.
     pub(super) fn clips(&self, shape: DeviceShape) -> Result<Vec<Clip>> {
         let long = shortlist_from(shape);
+        let many = limits::RECORD_SURFACES + 1;
         let mut clips = vec![Clip::default()];
-        let listed = self.planes.min(Clip::MAX_SURFACES as u32);
-        for count in counts([1, 2, long, listed], listed) {
+        for count in counts([1, 2, long, many, self.planes], self.planes) {
             clips.push(planes(count)?);
         }
-        let combined = match self.planes > Clip::MAX_SURFACES as u32 {
-            true => self.planes.max(self.surfaces),
+        // A layer that bends beside one of many planes has its code, shortlists and long records.
+        let most = match self.layers > 1 && self.surfaces > 0 {
+            true => self.surfaces.max(self.planes.min(long.max(many))),
             false => self.surfaces,
         };
-        // A layer that bends beside one of many planes has its code, and shortlists.
-        let most = match self.layers > 1 && combined > 0 {
-            true => combined.max(listed.min(long)),
-            false => combined,
-        };
-        for count in counts([1, long, most, most], most) {
+        for count in counts([1, long, many, most, most], most) {
             clips.push(spheres(count)?);
         }
         Ok(clips)
     }
 }
 
-const MOST_SURFACES: u32 = 1 << 16;
-
 /// Those of some numbers, each once, that are not 0 and not beyond the most.
-fn counts(mut counts: [u32; 4], most: u32) -> impl Iterator<Item = u32> {
+fn counts(mut counts: [u32; 5], most: u32) -> impl Iterator<Item = u32> {
     counts.sort_unstable();
     let mut last = 0;
     counts.into_iter().filter(move |count| {
@@ -154,45 +148,4 @@ fn spheres(count: u32) -> Result<Clip> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn each_kind_of_clip_comes_once() {
-        let limits = FrameLimits::new((64, 64), 1);
-        let sizes = |limits: &FrameLimits| -> Vec<(usize, bool)> {
-            let clips = limits.clips(DeviceShape::Cpu).expect("proper surfaces");
-            let kind = |clip: &Clip| (clip.all_surfaces().len(), clip.is_general());
-            clips.iter().map(kind).collect()
-        };
-        let few = [(0, false), (1, false), (2, false), (3, false), (6, false)];
-        assert_eq!(sizes(&limits), few);
-        let none = limits.clone().planes(0);
-        assert_eq!(sizes(&none), [(0, false)]);
-        let bent = limits.clone().planes(0).surfaces(20);
-        let kinds = [(0, false), (1, true), (3, true), (20, true)];
-        assert_eq!(sizes(&bent), kinds);
-        let many = limits.planes(40);
-        assert_eq!(
-            sizes(&many).last(),
-            Some(&(40, true)),
-            "more than a list has"
-        );
-    }
-
-    #[test]
-    fn limits_that_no_frame_can_have_are_refused() {
-        let limits = FrameLimits::new((64, 64), 1);
-        assert!(limits.check().is_ok());
-        for (wrong, named) in [
-            (limits.clone().size((0, 64)), "size is 0x64"),
-            (limits.clone().layers(0), "layers is 0"),
-            (limits.clone().gaussians(u32::MAX), "beyond the 2^32"),
-            (limits.clone().surfaces(1 << 17), "131072"),
-            (limits.clone().settings(Vec::new()), "settings is empty"),
-        ] {
-            let error = wrong.check().expect_err("no frame can").to_string();
-            assert!(error.contains(named), "{error}");
-        }
-    }
-}
+mod tests;

@@ -1,84 +1,66 @@
-//! The memory that frames compute in, and the memory that they have outgrown.
+//! The memory that a cut or an eye computes in, and the memory that it has outgrown.
 
 use std::sync::Arc;
 
-use super::estimate::PairEstimate;
-use super::pair_room::PairRoom;
-use super::request::FrameRequest;
-use crate::passes::{Buffers, Plan, Sizes, Spare};
+use crate::passes::{Buffers, Owner, Sizes, Spare};
 use rara_base::error::{Error, Result};
 use rara_gpu::Device;
-use rara_scene::settings::Raster;
 
-/// The buffers that all frames share, one after the other.
-#[derive(Debug, Default)]
-pub(super) struct WorkingMemory {
-    buffers: Option<Arc<Buffers>>,
+/// The buffers of a cut, or those that all frames of an eye share, one after the other.
+#[derive(Debug)]
+pub(super) struct Memory<P: Owner> {
+    buffers: Option<Arc<Buffers<P>>>,
     /// Buffers that frames in flight may still use, with the number of frames prepared when they were replaced.
-    retired: Vec<(u64, Arc<Buffers>)>,
-    pub(super) pairs: PairRoom,
-    pub(super) estimate: PairEstimate,
+    retired: Vec<(u64, Arc<Buffers<P>>)>,
 }
 
-impl WorkingMemory {
-    pub(super) fn fits(&self, plan: &Plan) -> bool {
-        let buffers = self.buffers.as_ref();
-        buffers.is_some_and(|buffers| buffers.fit(&plan.sizes()))
-    }
-
-    /// Makes room for as many pairs as a frame has shown to be needed, and as a request of a picture of so many tiles is
-    /// expected to have. Returns whether it is more than there was.
-    pub(super) fn make_room(
-        &mut self,
-        request: &FrameRequest<'_>,
-        tiles: u32,
-        needed: u32,
-        budget: Option<u64>,
-    ) -> bool {
-        let pairs = &mut self.pairs;
-        let had = pairs.room();
-        pairs.review(budget);
-        pairs.make(request.scene.count, tiles, needed);
-        if matches!(request.settings.raster, Raster::Auto | Raster::Tiles) && !pairs.is_fixed() {
-            let whole = request.whole.unwrap_or(request.camera);
-            pairs.expect(self.estimate.update(request.scene, request.camera, whole));
+impl<P: Owner> Default for Memory<P> {
+    fn default() -> Self {
+        Self {
+            buffers: None,
+            retired: Vec::new(),
         }
-        pairs.room() > had
+    }
+}
+
+impl<P: Owner> Memory<P> {
+    pub(super) fn fits(&self, plan: &P) -> bool {
+        let buffers = self.buffers.as_ref();
+        buffers.is_some_and(|buffers| buffers.fit(&Sizes::new(plan)))
     }
 
-    /// Replaces the buffers that a plan does not fit into, and keeps the others; after an error there are none. `frames` are
-    /// the numbers of frames that were prepared, and of those of them that are finished.
-    pub(super) fn replace(
-        &mut self,
-        device: &Device,
-        plan: &Plan,
-        frames: (u64, u64),
-    ) -> Result<()> {
-        self.reserve(device, (plan, plan.sizes()), frames)
+    /// The bytes that [`reserve`](Self::reserve) allocates beside what it keeps, and those that it frees before that.
+    pub(super) fn change(&self, plan: &P, need: &Sizes<P>, frames: (u64, u64)) -> [u64; 2] {
+        let (all, spare) = self.kept(plan, need);
+        let (prepared, finished) = frames;
+        // What no frame in flight uses goes before the rest comes.
+        let goes = self.buffers.as_ref().filter(|_| finished >= prepared);
+        let goes = goes.map_or(0, |buffers| buffers.outgrown(&spare));
+        [spare.missing(&all), goes]
     }
 
-    /// As [`replace`](Self::replace), by buffers of these sizes at least. Where the budget has no room for them, the buffers are
-    /// as they were.
-    pub(super) fn reserve(
-        &mut self,
-        device: &Device,
-        (plan, need): (&Plan, Sizes),
-        (prepared, finished): (u64, u64),
-    ) -> Result<()> {
+    /// The sizes of all buffers, those that are there and larger than needed included, and the buffers that can be kept.
+    fn kept(&self, plan: &P, need: &Sizes<P>) -> (Sizes<P>, Spare) {
         let had = self.buffers.as_deref();
-        let serving = had.filter(|buffers| buffers.sizes().serve(&need));
+        let serving = had.filter(|buffers| buffers.sizes().serve(need));
         // Nothing becomes smaller, so that going back to a frame before allocates nothing.
         let all = match serving {
             Some(buffers) => need.clone().or(buffers.sizes()),
             None => need.clone(),
         };
         let spare = serving.map(|buffers| buffers.spare(plan, &all, |has, needs| has >= needs));
-        let spare = spare.unwrap_or_default();
-        let missing = spare.missing(&all);
-        // What no frame in flight uses goes before the rest comes.
-        let goes = had.filter(|_| finished >= prepared);
-        let goes = goes.map_or(0, |buffers| buffers.outgrown(&spare));
-        device.check_budget("a frame's working memory", missing, goes)?;
+        (all, spare.unwrap_or_default())
+    }
+
+    /// Replaces the buffers that are smaller than these sizes, and keeps the others; after an error there are none. It is
+    /// given how many frames were prepared, and how many of these are finished.
+    pub(super) fn reserve(
+        &mut self,
+        device: &Device,
+        (plan, need): (&P, Sizes<P>),
+        (prepared, finished): (u64, u64),
+    ) -> Result<()> {
+        let (all, spare) = self.kept(plan, &need);
         // Free first: both together may not fit.
         let outgrown = self.buffers.take();
         let had_spare = outgrown.is_some();
@@ -98,8 +80,8 @@ impl WorkingMemory {
     }
 
     /// Adds the further buffers of a reclipped frame, after so many prepared ones; after an error the buffers are as they were.
-    pub(super) fn extend(&mut self, device: &Device, plan: &Plan, prepared: u64) -> Result<()> {
-        let (had, need) = (self.buffers(), plan.sizes());
+    pub(super) fn extend(&mut self, device: &Device, plan: &P, prepared: u64) -> Result<()> {
+        let (had, need) = (self.buffers(), Sizes::new(plan));
         if had.fit(&need) {
             return Ok(());
         }
@@ -119,12 +101,13 @@ impl WorkingMemory {
     }
 
     /// Frees all that a plan does not need, once all frames are finished; after an error there is nothing.
-    pub(super) fn trim(&mut self, device: &Device, plan: Option<&Plan>) -> Result<()> {
+    pub(super) fn trim(&mut self, device: &Device, plan: Option<&P>) -> Result<()> {
         self.retired.clear();
         let had = self.buffers.take();
         if let Some(plan) = plan {
-            let sizes = plan.sizes();
-            let exact = |buffers: &Buffers| buffers.spare(plan, &sizes, |has, needs| has == needs);
+            let sizes = Sizes::new(plan);
+            let exact =
+                |buffers: &Buffers<P>| buffers.spare(plan, &sizes, |has, needs| has == needs);
             let spare = had.as_deref().map(exact).unwrap_or_default();
             drop(had);
             self.buffers = Some(Arc::new(Buffers::new(device, plan, sizes, &spare)?));
@@ -145,7 +128,7 @@ impl WorkingMemory {
 
     /// Keeps the buffers of a frame that was prepared until it is finished, if they have been replaced since it was configured.
     /// Returns whether they have.
-    pub(super) fn keep_replaced(&mut self, buffers: &Arc<Buffers>, prepared: u64) -> bool {
+    pub(super) fn keep_replaced(&mut self, buffers: &Arc<Buffers<P>>, prepared: u64) -> bool {
         let current = self.buffers.as_ref();
         let is_replaced = current.is_none_or(|current| !Arc::ptr_eq(current, buffers));
         if is_replaced {
@@ -155,12 +138,12 @@ impl WorkingMemory {
     }
 
     /// The buffers, if a frame has been configured.
-    pub(super) fn allocated(&self) -> Option<&Buffers> {
+    pub(super) fn allocated(&self) -> Option<&Buffers<P>> {
         self.buffers.as_deref()
     }
 
     /// The buffers of a frame that is configured.
-    pub(super) fn buffers(&self) -> &Arc<Buffers> {
-        self.buffers.as_ref().expect("replace() allocates them")
+    pub(super) fn buffers(&self) -> &Arc<Buffers<P>> {
+        self.buffers.as_ref().expect("reserve() allocates them")
     }
 }

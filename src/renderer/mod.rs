@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use ash::vk;
 
-use crate::passes::PreviousFrame;
+use crate::passes::{EyePlan, PreviousFrame};
 use crate::stats::RasterChoice;
 use rara_base::error::{Error, Result};
 use rara_gpu::Device;
@@ -15,10 +15,9 @@ use rara_scene::placement::Placement;
 
 mod choose;
 mod configure;
+mod cut;
 mod desc;
 mod estimate;
-#[cfg(test)]
-mod faults;
 mod frame;
 mod frames;
 mod limits;
@@ -36,16 +35,23 @@ mod stats;
 mod tests;
 mod working;
 
+pub use cut::Cut;
+pub(crate) use cut::check_device;
 pub use desc::{ColorSpace, DepthDesc, ExpectedDepthDesc, RendererDesc};
 pub use frame::{ConfiguredFrame, PreparedFrame};
 pub(crate) use frames::RecordedFrame;
 pub use limits::FrameLimits;
-pub(crate) use outcome::{Outcome, Submission};
+pub use outcome::Outcome;
+pub(crate) use outcome::Submission;
 pub use pick::{Pick, PickTicket, Picker, Picks};
 pub(crate) use request::FrameRequest;
+pub use request::Kept;
 
+use cut::CutState;
+use estimate::PairEstimate;
 use frames::FramesInFlight;
-use memory::WorkingMemory;
+use memory::Memory;
+use pair_room::PairRoom;
 use shared::SharedPipelines;
 
 /// Draws a scene into the host's rendering scope.
@@ -106,7 +112,11 @@ pub struct Renderer {
     /// The placement of the next frame's scene in the world of camera, clip and depths.
     placement: Placement,
     pipelines: SharedPipelines,
-    memory: WorkingMemory,
+    /// The cut of frames that are configured without one.
+    cut: CutState,
+    memory: Memory<EyePlan>,
+    pairs: PairRoom,
+    estimate: PairEstimate,
     frames: FramesInFlight,
     /// The results that the last prepared frame has left in the memory.
     previous: Option<PreviousFrame>,
@@ -180,7 +190,10 @@ impl Renderer {
             desc,
             placement: Placement::IDENTITY,
             pipelines,
-            memory: WorkingMemory::default(),
+            cut: CutState::default(),
+            memory: Memory::default(),
+            pairs: PairRoom::default(),
+            estimate: PairEstimate::default(),
             frames,
             previous: None,
             id: NEXT_ID.fetch_add(1, Ordering::Relaxed),
@@ -225,6 +238,7 @@ impl Renderer {
     /// after it.
     pub fn forget(&mut self) {
         self.previous = None;
+        self.cut.found = None;
         self.pending = Arc::default(); // frames that are configured may count on it
     }
 
@@ -239,7 +253,7 @@ impl Renderer {
     /// Leaves room for only so many pairs of tile and splat, as on a small device.
     #[cfg(test)]
     pub(crate) fn limit_pairs(&mut self, most: u32) {
-        self.memory.pairs = pair_room::PairRoom::limited(most);
+        self.pairs = PairRoom::limited(most);
     }
 
     /// The sides that view and clip have found for each block.

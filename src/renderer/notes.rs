@@ -39,7 +39,7 @@ impl Renderer {
         log::trace!(
             "frame {number} shows {} in {width}x{height} px with {}, room for {}, and without {}",
             counted(plan.gaussians(), "Gaussian"),
-            counted(plan.layers.most_surfaces(), "surface"),
+            counted(plan.cut.layers.most_surfaces(), "surface"),
             counted(plan.data.room.pair_capacity, "pair"),
             match frame.skipped() {
                 skipped if skipped.is_empty() => "skipping a stage".into(),

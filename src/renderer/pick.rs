@@ -6,18 +6,17 @@ use ash::vk;
 
 use super::Renderer;
 use super::desc::{ColorSpace, RendererDesc};
-use super::request::FrameRequest;
+use super::request::{FrameRequest, Kept};
 use crate::passes::{SceneBuffers, TilePicture};
 use rara_base::error::{Error, Result};
 use rara_base::limits;
 use rara_gpu::{Buffer, BufferDesc, Device, Location, Recorder, Target};
 use rara_scene::camera::Camera;
-use rara_scene::clip::Clip;
 use rara_scene::placement::Placement;
 use rara_scene::precision::TargetFormat;
 use rara_scene::settings::{Raster, Settings, Show};
 
-/// Finds the Gaussians that pixels show most of, for a host that selects by a click or a rectangle.
+/// A picker finds the Gaussians that add most to pixels, for a host that selects by a click or a rectangle.
 ///
 /// [`record`](Self::record) draws the part of the picture that is asked about into memory of the picker's own, with the stages
 /// of a frame: it takes the clip, layers and weights into account, and what lies outside the part is culled. Nothing of the
@@ -74,22 +73,22 @@ impl PickTicket {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Pick {
-    /// Its Gaussian's number in the scene: that in its layer, behind all Gaussians of the layers before it, or as
-    /// [`Layer::numbered`](crate::Layer::numbered) says.
+    /// The number of the splat's Gaussian in the scene: its number in its layer plus the number of Gaussians in all layers
+    /// before, or as [`Layer::numbered`](crate::Layer::numbered) says.
     pub number: u32,
     /// The number of its layer, in [`SceneBuffers::layers`].
     pub layer: usize,
-    /// What it adds to the alpha of the pixel, from 1/255 to 1; of several pixels, the sum.
+    /// The alpha that the splat adds to the pixel, from 1/255 to 1. For several pixels, the sum.
     pub alpha: f32,
 }
 
-/// What the pixels of a rectangle show most of.
+/// The splats that add most to the pixels of a rectangle.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Picks {
     /// The rectangle that was asked about, px.
     pub rect: vk::Rect2D,
-    /// A pick for each of its pixels, row by row from the upper left; `None` where no splat adds 1/255, the least that shows.
+    /// A pick for each pixel of the rectangle, row by row from the upper left; `None` if no splat adds at least 1/255.
     pub pixels: Vec<Option<Pick>>,
 }
 
@@ -133,23 +132,24 @@ impl Picker {
         self.renderer.set_placement(placement);
     }
 
-    /// Records the question what the pixels of `rect` show most of, in the picture of `camera`. Of the settings, those that
-    /// say how splats are cut and projected count. This allocates where it asks for more than any request before it, and the
+    /// Records the question what the pixels of `rect` show most of, in the picture of `camera`. Of the settings, those count
+    /// that say how splats are cut and projected. This allocates where it asks for more than any request before it, and the
     /// first request compiles what no frame needs: make one that nobody waits for.
     ///
     /// # Safety
-    /// As for [`Renderer::prepare`], with requests in place of frames: of so many as [`new`](Self::new) was told the first one
-    /// has finished before one more is recorded, and all of them before the picker is dropped.
+    /// As for [`Renderer::prepare`], with requests in place of frames: of so many as [`new`](Self::new) was told, the first
+    /// one has finished before one more is recorded, and all have before the picker is dropped. A [`Cut`](super::Cut) lives
+    /// until the commands have executed.
     ///
     /// # Errors
     /// As for [`Renderer::configure`], and [`Error::Invalid`] for a rectangle that has no pixels or reaches out of the
     /// picture. Nothing is recorded then.
-    pub unsafe fn record(
+    pub unsafe fn record<'a>(
         &mut self,
         cmd: vk::CommandBuffer,
         scene: &SceneBuffers,
         camera: &Camera,
-        clip: &Clip,
+        kept: impl Into<Kept<'a>>,
         settings: &Settings,
         rect: vk::Rect2D,
     ) -> Result<PickTicket> {
@@ -161,7 +161,7 @@ impl Picker {
         let frame = self.renderer.configure_frame(&FrameRequest {
             picture: Some(TargetFormat::Float),
             whole: Some(camera),
-            ..FrameRequest::in_flight(scene, &part, clip, &settings)
+            ..FrameRequest::in_flight(scene, &part, kept.into(), &settings)
         })?;
         let device = self.renderer.device.clone();
         let slot = &mut self.slots[(self.recorded % self.slots.len() as u64) as usize];
@@ -292,7 +292,7 @@ fn part_of(camera: &Camera, rect: vk::Rect2D) -> Result<Camera> {
     let (x, y) = (rect.offset.x, rect.offset.y);
     if !along(x, width, camera.width) || !along(y, height, camera.height) {
         return Err(Error::Invalid(format!(
-            "a pick of {width}x{height} px at {x}, {y} is no part of a picture of {}x{}",
+            "a pick of {width}x{height} px at {x}, {y} is not inside the picture of {}x{} px",
             camera.width, camera.height
         )));
     }

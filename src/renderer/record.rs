@@ -4,9 +4,11 @@ use std::sync::Arc;
 
 use ash::vk;
 
-use super::frame::FrameState;
+use super::frame::{FrameCut, FrameState};
 use super::{ConfiguredFrame, PreparedFrame, Renderer, out_of_order};
-use crate::passes::{self, PreviousFrame, Resources, SceneBuffers, Work, composite, tiles};
+use crate::passes::{
+    self, CutResources, EyeResources, PreviousFrame, SceneBuffers, Work, composite, tiles,
+};
 use rara_base::error::Result;
 use rara_gpu::{DepthImage, Drawer, Recorder};
 
@@ -55,13 +57,24 @@ impl Renderer {
             }
             _ => {}
         }
-        if state.decision.takes_over() && !is_next {
+        let owns_cut = match &state.cut {
+            FrameCut::Own(_) => true,
+            FrameCut::Seen(cut) if cut.is_recorded() => false,
+            FrameCut::Seen(_) => {
+                return out_of_order(
+                    "prepare was given a frame of a cut that is not as it was configured with: call Cut::prepare between \
+                     Cut::configure and this, and configure the frame after Cut::configure",
+                );
+            }
+        };
+        if state.decision.takes_over(owns_cut) && !is_next {
             return out_of_order(
                 "prepare was given a frame that takes over from another than the one before: prepare frames in the order in \
                  which they were configured, and configure again after forget()",
             );
         }
         let slot = self.frames.begin(&state.decision);
+        slot.cut = (!owns_cut).then(|| state.cut.buffers().clone());
         let plan = &state.decision.plan;
         if plan.gaussians() > 0 {
             // SAFETY: the caller promises that `cmd` is recording, outside a rendering scope.
@@ -71,13 +84,16 @@ impl Renderer {
                 // SAFETY: the caller promises the image, its layout and that its depths are visible.
                 unsafe { recorder.copy_depth(depth, to, occluders.size) }
             });
-            let resources = Resources {
-                pipelines: &state.pipelines,
-                scene,
+            let resources = EyeResources {
+                cut: CutResources {
+                    pipelines: &state.pipelines,
+                    scene,
+                    buffers: state.cut.buffers(),
+                },
                 buffers: &state.buffers,
+                copied: copied.unwrap_or_default(),
             };
-            let copied = copied.unwrap_or_default();
-            passes::record(plan, &mut recorder, resources, copied, &slot.counts);
+            passes::record(plan, &mut recorder, resources, owns_cut, &slot.counts);
             self.keep(scene, &state);
         }
         Ok(PreparedFrame {
@@ -92,10 +108,16 @@ impl Renderer {
         let prepared = self.frames.prepared();
         let is_replaced = self.memory.keep_replaced(&state.buffers, prepared);
         if plan.work != Work::Draw {
-            let before = self.previous.take();
             // Later frames find nothing in buffers that have been replaced.
             let keeps = self.desc.reuse && plan.occluders.is_none() && !is_replaced;
-            self.previous = keeps.then(|| PreviousFrame::after(before, scene.id, plan));
+            self.previous = keeps.then(|| PreviousFrame::after(scene.id, plan));
+        }
+        if let FrameCut::Own(buffers) = &state.cut {
+            self.cut.keep(scene.id, &plan.cut, (buffers, prepared));
+            // The shortlists of a reclipped frame have replaced those of the sides.
+            if !self.desc.reuse || (plan.reclips() && plan.cut.is_shortlisted()) {
+                self.cut.found = None;
+            }
         }
     }
 

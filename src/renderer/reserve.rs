@@ -4,11 +4,14 @@ use glam::DVec3;
 
 use super::choose;
 use super::configure::needs_tiles;
+use super::frame::FrameCut;
 use super::frames::FramesInFlight;
 use super::limits::FrameLimits;
 use super::pair_room::PairRoom;
 use super::{PreparedFrame, Renderer, configure};
-use crate::passes::{Plan, SceneBuffers, SceneFacts, SceneLayer, Sizes, Work};
+use crate::passes::{
+    CutPlan, EyeFacts, EyePlan, SceneBuffers, SceneFacts, SceneLayer, Sizes, Work,
+};
 use rara_base::error::Result;
 use rara_base::limits;
 use rara_scene::camera::Camera;
@@ -35,31 +38,28 @@ impl Renderer {
         limits.check()?;
         self.forget();
         let pairs = self.reserved_pairs(limits);
-        let mut sizes: Option<Sizes> = None;
-        let mut largest = None;
+        let mut all: Option<(EyePlan, Sizes<EyePlan>, Sizes<CutPlan>)> = None;
         self.for_each_plan(limits, pairs, &mut |plan| {
-            let mut more = plan.sizes();
-            let holds_tiles = |sizes: &Sizes| sizes.hold_tiles_of(&more);
-            if plan.is_tiled() && !sizes.as_ref().is_some_and(holds_tiles) {
-                more = of_lower_pictures(plan)?;
+            let mut of_eye = Sizes::new(plan);
+            let held = all.as_ref().map(|(_, sizes, _)| sizes);
+            if plan.is_tiled() && !held.is_some_and(|sizes| sizes.hold_tiles_of(&of_eye)) {
+                of_eye = of_lower_pictures(plan)?;
             }
-            let more = more.reserved();
-            sizes = Some(match sizes.take() {
-                Some(sizes) => sizes.or(&more),
-                None => more,
+            let (of_eye, of_cut) = (of_eye.reserved(), Sizes::new(&plan.cut).reserved());
+            all = Some(match all.take() {
+                Some((first, eye, cut)) => (first, eye.or(&of_eye), cut.or(&of_cut)),
+                None => (plan.clone(), of_eye, of_cut),
             });
-            largest.get_or_insert_with(|| plan.clone());
             Ok(())
         })?;
-        let (Some(sizes), Some(plan)) = (sizes, largest) else {
+        let Some((plan, of_eye, of_cut)) = all else {
             return Ok(());
         };
-        let memory = &mut self.memory;
-        let largest = sizes.largest();
+        let largest = of_eye.largest().max(of_cut.largest());
         // A thread of its own waits for nothing.
         let frames = (self.frames.prepared(), self.frames.finished_at_least());
-        memory.reserve(&self.device, (&plan, sizes), frames)?;
-        memory.pairs = pairs;
+        self.grow(&plan, Some(of_cut), Some(of_eye), frames)?;
+        self.pairs = pairs;
         self.compile(limits, pairs, largest)
     }
 
@@ -73,29 +73,36 @@ impl Renderer {
     pub fn trim(&mut self, keep: Option<&PreparedFrame>) -> Result<()> {
         let plan = keep.map(|frame| frame.state.decision.plan.clone());
         self.previous = None;
+        self.cut.found = None;
         let mut pairs = PairRoom::default();
         let plan = plan.map(|mut plan| {
             let needed = self.frames.newest().map_or(0, |frame| frame.pairs());
             pairs.make(
-                plan.data.scene.gaussian_count,
+                plan.cut.data.scene.gaussian_count,
                 plan.data.tiles.tile_count,
                 needed,
             );
             if plan.is_tiled() {
-                pairs.expect(self.memory.estimate.last());
+                pairs.expect(self.estimate.last());
             }
             plan.data.room.pair_capacity = pairs.room();
             plan
         });
-        self.memory.pairs = pairs;
-        self.memory.trim(&self.device, plan.as_ref())
+        self.pairs = pairs;
+        self.frames.release_cuts();
+        // A frame of a host's cut needs nothing of the renderer's own.
+        let is_own = |keep: &PreparedFrame| matches!(keep.state.cut, FrameCut::Own(_));
+        let of_cut = plan.as_ref().filter(|_| keep.is_some_and(is_own));
+        let device = &self.device;
+        self.cut.memory.trim(device, of_cut.map(|plan| &plan.cut))?;
+        self.memory.trim(device, plan.as_ref())
     }
 
     /// Bytes of device memory that its working memory takes, with what frames in flight still use. Buffers that frames in
     /// flight and the next one share count once. Scenes have their own ([`SceneBuffers::bytes`]), and
     /// [`Device::device_bytes`](crate::gpu::Device::device_bytes) is the sum of all.
     pub fn bytes(&self) -> u64 {
-        self.memory.bytes() + self.frames.bytes()
+        self.cut.memory.bytes() + self.memory.bytes() + self.frames.bytes()
     }
 
     /// The room for pairs that limits ask for.
@@ -103,7 +110,7 @@ impl Renderer {
         if let Some(pairs) = limits.pairs {
             return PairRoom::fixed(pairs);
         }
-        let had = self.memory.pairs;
+        let had = self.pairs;
         let mut pairs = match had.is_fixed() {
             true => PairRoom::default(),
             false => had,
@@ -123,8 +130,9 @@ impl Renderer {
         let mut pipelines = std::mem::take(&mut self.pipelines);
         let compiled = self.for_each_plan(limits, pairs, &mut |plan| {
             for targets in targets {
-                pipelines.ensure(&self.device, of_memory, targets, plan)?;
-                pipelines.ensure(&self.device, of_scene, targets, plan)?;
+                let needs = |need: &mut dyn FnMut(_)| plan.pipelines(targets, need);
+                pipelines.ensure(&self.device, of_memory, &needs)?;
+                pipelines.ensure(&self.device, of_scene, &needs)?;
             }
             Ok(())
         });
@@ -137,7 +145,7 @@ impl Renderer {
         &self,
         limits: &FrameLimits,
         pairs: PairRoom,
-        act: &mut dyn FnMut(&Plan) -> Result<()>,
+        act: &mut dyn FnMut(&EyePlan) -> Result<()>,
     ) -> Result<()> {
         let nothing = Gaussians::default();
         let layer = SceneLayer::new(&Layer::new("", &nothing), 0);
@@ -167,27 +175,33 @@ impl Renderer {
         limits: &FrameLimits,
         pairs: PairRoom,
         (layers, clip, settings, size): (&[SceneLayer], &Clip, &Settings, (u32, u32)),
-    ) -> Result<Plan> {
+    ) -> Result<EyePlan> {
         let camera = Camera::look_at(DVec3::ZERO, DVec3::Z, DVec3::NEG_Y, 50.0, size)?;
         let targets = self.targets(false);
         let (raster, _) = self.choose_raster(settings, tiles(size), &targets)?;
         let facts = SceneFacts {
+            layers,
             gaussians: limits.gaussians,
             // Each layer begins with a block of its own.
             blocks: limits.gaussians.div_ceil(limits::BLOCK_SIZE) + limits.layers,
+            reordered: true,
+            sh_degree: 0,
             sh_format: limits.sh_format,
+            shape: self.device.shape(),
+        };
+        let eye = EyeFacts {
             pair_capacity: pairs.room(),
             redrawn: needs_tiles(settings, &targets),
-            ..self.facts(layers, limits.gaussians, raster, self.depth_map())
+            ..self.facts(limits.gaussians, raster, self.depth_map())
         };
-        let mut plan = Plan::new(facts, &camera, clip, settings)?;
-        plan.data.scene.layer_count = limits.layers;
-        Ok(plan)
+        let mut cut = CutPlan::new(facts, None, clip, settings)?;
+        cut.data.scene.layer_count = limits.layers;
+        EyePlan::new(facts, cut, eye, &camera, settings)
     }
 
     /// The parts of a frame that may be computed in place of the whole.
-    fn further_work(&self, plan: &Plan) -> Vec<Work> {
-        if !self.desc.reuse || !plan.finds_clip() || plan.occluders.is_some() {
+    fn further_work(&self, plan: &EyePlan) -> Vec<Work> {
+        if !self.desc.reuse || !plan.cut.clips() || plan.occluders.is_some() {
             return Vec::new();
         }
         let both = [true, false];
@@ -200,12 +214,12 @@ impl Renderer {
 }
 
 /// The sizes of a plan and of the same for lower pictures, for which CPU drivers divide the rows into more parts.
-fn of_lower_pictures(plan: &Plan) -> Result<Sizes> {
+fn of_lower_pictures(plan: &EyePlan) -> Result<Sizes<EyePlan>> {
     let [width, height] = plan.size().map(|side| side as u32);
-    let mut sizes = plan.sizes();
+    let mut sizes = Sizes::new(plan);
     for rows in 1..height.div_ceil(limits::TILE_HEIGHT) {
         let lower = plan.sized(width, rows * limits::TILE_HEIGHT)?;
-        sizes = sizes.or(&lower.sizes());
+        sizes = sizes.or(&Sizes::new(&lower));
     }
     Ok(sizes)
 }

@@ -2,11 +2,14 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use crate::passes::{Pipelines, Plan, Targets};
+use crate::passes::{PipelineKey, Pipelines};
 use rara_base::error::Result;
 use rara_gpu::{Bindings, Device};
 
 type ByBindings = [Option<Arc<Pipelines>>; 3];
+
+/// Calls a function with each pipeline that something needs.
+type Needs<'a> = &'a dyn Fn(&mut dyn FnMut(PipelineKey));
 
 /// A renderer's view of the compiled pipelines.
 #[derive(Debug, Default)]
@@ -27,27 +30,24 @@ impl SharedPipelines {
         }
     }
 
-    /// True when a renderer has made all pipelines that a plan needs.
-    #[cfg_attr(not(feature = "view"), allow(dead_code))]
-    pub(super) fn has_all(&self, bindings: Bindings, targets: Targets, plan: &Plan) -> bool {
-        let (at, has_all) = (bindings as usize, |pipelines: &Pipelines| {
-            has_all(pipelines, targets, plan)
-        });
+    /// True when a renderer has made all pipelines that are needed.
+    pub(super) fn has_all(&self, bindings: Bindings, needs: Needs<'_>) -> bool {
+        let at = bindings as usize;
+        let has_all = |pipelines: &Pipelines| has_all(pipelines, needs);
         let all = || self.all.lock().unwrap_or_else(PoisonError::into_inner);
         // Without the lock where nothing is new.
         self.seen[at].as_deref().is_some_and(has_all) || all()[at].as_deref().is_some_and(has_all)
     }
 
-    /// Compiles the pipelines that a plan needs and no renderer has compiled yet; returns whether there were any.
+    /// Compiles the pipelines that are needed and no renderer has compiled yet; returns whether there were any.
     pub(super) fn ensure(
         &mut self,
         device: &Device,
         bindings: Bindings,
-        targets: Targets,
-        plan: &Plan,
+        needs: Needs<'_>,
     ) -> Result<bool> {
         let at = bindings as usize;
-        let has_all = |pipelines: &Pipelines| has_all(pipelines, targets, plan);
+        let has_all = |pipelines: &Pipelines| has_all(pipelines, needs);
         if self.seen[at].as_deref().is_some_and(has_all) {
             return Ok(false);
         }
@@ -58,7 +58,7 @@ impl SharedPipelines {
             // This replaces the shared pipelines by a copy, while other renderers record with the ones that they have.
             let pipelines = Arc::make_mut(shared);
             let mut keys = Vec::new();
-            plan.pipelines(targets, &mut |key| keys.push(key));
+            needs(&mut |key| keys.push(key));
             pipelines.ensure(device, keys)?;
         }
         self.seen[at] = Some(shared.clone());
@@ -72,8 +72,8 @@ impl SharedPipelines {
     }
 }
 
-fn has_all(pipelines: &Pipelines, targets: Targets, plan: &Plan) -> bool {
+fn has_all(pipelines: &Pipelines, needs: Needs<'_>) -> bool {
     let mut all = true;
-    plan.pipelines(targets, &mut |key| all &= pipelines.has(&key));
+    needs(&mut |key| all &= pipelines.has(&key));
     all
 }

@@ -1,7 +1,7 @@
 //! The statistics of frames: counts, times, and what was left out.
 
 use super::frames::{Decision, RecordedFrame};
-use super::outcome::{Outcome, Submission};
+use super::outcome::Outcome;
 use super::{ConfiguredFrame, Renderer};
 use crate::passes::DRAW;
 use crate::stats::{FrameStats, PassTime, RasterChoice};
@@ -61,6 +61,25 @@ impl Renderer {
             .unwrap_or_default()
     }
 
+    /// All of these statistics of the same frame; `None` where no frame is that old. `wall_ms` is 0, as only the host knows when a
+    /// frame is ready.
+    pub fn stats(&self) -> Option<FrameStats> {
+        self.oldest().map(RecordedFrame::stats)
+    }
+
+    /// The outcome of the same frame, for hosts that draw only what has changed: it says whether the frame should be drawn once
+    /// more. `None` where no frame is that old.
+    pub fn outcome(&self) -> Option<Outcome> {
+        self.oldest().map(|frame| self.outcome_of(frame))
+    }
+
+    /// True when the same frame was the first to use a pipeline, which the driver may have compiled within it: then its times are
+    /// longer than those of the next.
+    pub fn is_first_use(&self) -> bool {
+        let decision = self.oldest().and_then(|frame| frame.decision.as_ref());
+        decision.is_some_and(|decision| decision.is_first_use)
+    }
+
     /// The frame that was prepared last. Before it is waited for, it knows no more than what was configured.
     pub(crate) fn newest(&self) -> Option<&RecordedFrame> {
         self.frames.newest()
@@ -72,7 +91,7 @@ impl Renderer {
     }
 
     /// The outcome of a frame that was waited for.
-    pub(crate) fn outcome(&self, frame: &RecordedFrame) -> Outcome {
+    pub(crate) fn outcome_of(&self, frame: &RecordedFrame) -> Outcome {
         let Some(decision) = &frame.decision else {
             return Outcome::Unchanged;
         };
@@ -82,7 +101,7 @@ impl Renderer {
         if !frame.fell_back() {
             return Outcome::Drawn;
         }
-        match self.memory.pairs.can_grow_to(frame.pairs()) {
+        match self.pairs.can_grow_to(frame.pairs()) {
             true => Outcome::NeedsRoom,
             false if decision.needs_tiles => Outcome::NoRoom,
             false if decision.redrawn => Outcome::NeedsRoom,
@@ -139,20 +158,6 @@ impl Decision {
 }
 
 impl RecordedFrame {
-    /// True when it was submitted while earlier frames were unfinished.
-    #[cfg_attr(not(feature = "view"), allow(dead_code))]
-    pub(crate) fn is_in_flight(&self) -> bool {
-        let decision = self.decision.as_ref();
-        decision.is_some_and(|decision| decision.submission == Submission::InFlight)
-    }
-
-    /// True when it was the first to use a pipeline, which the driver may have compiled within it.
-    #[cfg_attr(not(feature = "view"), allow(dead_code))]
-    pub(crate) fn is_first_use(&self) -> bool {
-        let decision = self.decision.as_ref();
-        decision.is_some_and(|decision| decision.is_first_use)
-    }
-
     /// All that is known of it but the time until it was ready, which only the one who waited knows.
     pub(crate) fn stats(&self) -> FrameStats {
         let passes = self.pass_times();
@@ -209,22 +214,24 @@ impl RecordedFrame {
     }
 
     fn counts(&self) -> Counts {
-        let Some(FrameCounts {
+        let (Some(counts), Some(decision)) = (self.read_counts(), &self.decision) else {
+            return Counts::default();
+        };
+        let FrameCounts {
             visible,
             cutoff,
             invisible,
             culled,
             ..
-        }) = self.read_counts()
-        else {
-            return Counts::default();
-        };
+        } = counts;
+        let has_room = counts.long_strides <= decision.plan.data.weight.long_strides;
         Counts {
             visible,
             cutoff,
             invisible,
             culled,
             drawn: visible + cutoff,
+            shortened: if has_room { 0 } else { counts.long_records },
         }
     }
 

@@ -1,5 +1,7 @@
 //! Tests that look inside a renderer.
 
+mod faults;
+
 use std::collections::BTreeMap;
 
 use super::*;
@@ -59,7 +61,8 @@ fn recording_waits_for_no_compiler() {
 
 /// The working buffers by name: where they are, and how large.
 fn places(renderer: &Renderer) -> BTreeMap<String, (u64, u64)> {
-    let all = renderer.memory.buffers().all();
+    let of_cut = renderer.cut.memory.buffers();
+    let all = renderer.memory.buffers().all().chain(of_cut.all());
     all.map(|buffer| (buffer.name().to_owned(), (buffer.address(), buffer.size())))
         .collect()
 }
@@ -76,7 +79,13 @@ fn buffers_that_suffice_stay_when_others_grow() {
         let desc = RendererDesc::new(FORMAT).frames_in_flight(frames_in_flight);
         let mut renderer = Renderer::new(&device, desc).expect("a renderer");
         let mut before = None;
-        let first_clip = ["clip_masks", "clip_sides", "cut_records", "surfaces"];
+        let first_clip = [
+            "clip_list",
+            "clip_masks",
+            "clip_sides",
+            "cut_records",
+            "surfaces",
+        ];
         for (count, raster, grown) in [
             (0, Raster::Tiles, &[][..]),
             (0, Raster::Tiles, &[]),

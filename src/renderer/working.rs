@@ -8,7 +8,8 @@ impl Renderer {
     /// no such buffer. This is for tests: names and contents are no interface, and change with any version.
     #[doc(hidden)]
     pub fn working_buffer(&self, name: &str) -> Option<Vec<u8>> {
-        let buffer = self.memory.allocated()?.named(name)?;
+        let of_eye = self.memory.allocated()?.named(name);
+        let buffer = of_eye.or_else(|| self.cut.memory.allocated()?.named(name))?;
         self.device.download(buffer).ok()
     }
 

@@ -9,9 +9,9 @@ use rara_base::error::{Error, Result};
 /// Members of an object of glTF, such as its `name` and its `extras`.
 pub(super) type Words = Map<String, Value>;
 
-/// The part of a glTF file around its Gaussians that no picture shows: names, `extras`, its copyright, and the nodes that lead to
-/// Gaussians. [`SceneFile::annotations`](super::SceneFile::annotations) has that of a file, and
-/// [`SaveOptions::annotations`](super::SaveOptions::annotations) writes it to another one.
+/// The annotations of a glTF file: names, `extras`, the copyright, and the nodes that lead to Gaussians. No picture shows them.
+/// [`SceneFile::annotations`](super::SceneFile::annotations) has the annotations of a file, and
+/// [`SaveOptions::annotations`](super::SaveOptions::annotations) writes them to another one.
 ///
 /// They count the Gaussians of each primitive, so that whoever drops some, or joins files, does the same to them by
 /// [`keep`](Self::keep) and [`append`](Self::append).
@@ -41,7 +41,7 @@ pub(super) struct AnnotatedPrimitive {
 }
 
 impl Annotations {
-    /// The annotations of Gaussians about which nothing is said.
+    /// Makes annotations of Gaussians, without any names or `extras`.
     pub fn of(gaussians: &Gaussians) -> Self {
         let mut node = AnnotatedNode::default();
         node.add(None, gaussians.len());
@@ -51,7 +51,7 @@ impl Annotations {
         }
     }
 
-    /// True where there is neither a name nor `extras` nor a copyright.
+    /// Returns true if there is neither a name nor `extras` nor a copyright.
     pub fn is_silent(&self) -> bool {
         let is_silent = |node: &AnnotatedNode| {
             let all = &node.primitives;
@@ -62,13 +62,13 @@ impl Annotations {
         self.asset.is_empty() && self.scene.is_empty() && self.nodes.iter().all(is_silent)
     }
 
-    /// The number of Gaussians that they are of.
+    /// Returns the number of Gaussians that the annotations belong to.
     pub fn count(&self) -> usize {
         let all = self.nodes.iter().flat_map(|node| &node.primitives);
         all.map(|one| one.count).sum()
     }
 
-    /// Keeps the Gaussians of these numbers, which ascend.
+    /// Keeps the annotations of the Gaussians of these numbers, which ascend.
     pub fn keep(&mut self, numbers: &[u32]) {
         let (mut end, mut done) = (0, 0);
         let all = self.nodes.iter_mut().flat_map(|node| &mut node.primitives);

@@ -6,8 +6,10 @@ use bytemuck::allocation::try_zeroed_vec;
 use glam::{DVec3, DVec4, Quat, Vec3};
 
 use super::failure::Failure;
+use super::gaussians::MAX_SH_DEGREE;
 use super::parts::keep;
-use super::{Format, GaussianArrays, Gaussians, LoadReport, Property, SceneFile, sh_coefficients};
+use super::scene_file::SceneFile;
+use super::{Format, GaussianArrays, Gaussians, LoadReport, Property, sh_coefficients};
 use rara_base::counted::counted;
 use rara_base::parallel::in_parallel;
 
@@ -38,8 +40,30 @@ pub(super) enum ColumnForm {
     Logarithms,
     /// Scales as logarithms, opacities from 0 to 1.
     LogScales,
+    /// Scales as they are, opacities as logits.
+    PlainScales,
     /// Both as they are.
     Plain,
+}
+
+impl ColumnForm {
+    /// That of a file that stores one or the other as it is.
+    pub(super) fn plain(scales: bool, opacities: bool) -> Self {
+        match (scales, opacities) {
+            (false, false) => Self::Logarithms,
+            (false, true) => Self::LogScales,
+            (true, false) => Self::PlainScales,
+            (true, true) => Self::Plain,
+        }
+    }
+
+    fn has_logarithms(self) -> bool {
+        matches!(self, Self::Logarithms | Self::LogScales)
+    }
+
+    fn has_logits(self) -> bool {
+        matches!(self, Self::Logarithms | Self::PlainScales)
+    }
 }
 
 /// Rows that one thread makes Gaussians of at a time: few enough to stay in its cache.
@@ -114,15 +138,17 @@ impl Assembler {
         self.arrays.positions.len() as u64
     }
 
-    /// Makes each row of its number, on all cores. Rows come with zeros.
+    /// Makes each row of its number, on all cores. Rows come with zeros, also for the properties.
     pub(super) fn make(
         mut self,
-        make: impl Fn(usize, &mut [f64; SLOTS]) -> Result<(), Failure> + Sync,
+        make: impl Fn(usize, &mut [f64]) -> Result<(), Failure> + Sync,
     ) -> Result<Self, Failure> {
+        let slots = SLOTS + self.properties.len();
         let read = |_| Ok(());
         self.read(ROWS, read, |(), rows| {
+            let mut row = vec![0.0; slots];
             for number in rows.numbers() {
-                let mut row = [0.0; SLOTS];
+                row.fill(0.0);
                 make(number as usize, &mut row)?;
                 rows.push(&row);
             }
@@ -212,6 +238,8 @@ impl Assembler {
             format: Format::Ply,
             antialiased: None,
             annotations: None,
+            others: Vec::new(),
+            up: None,
         };
         (loaded, self.properties)
     }
@@ -253,9 +281,9 @@ impl Rows<'_> {
             return;
         }
         let stored = [row[3], row[4], row[5]];
-        let scale = match self.stored {
-            ColumnForm::Plain => stored.map(|scale| scale.abs() as f32),
-            _ => stored.map(|log| log.exp() as f32),
+        let scale = match self.stored.has_logarithms() {
+            true => stored.map(|log| log.exp() as f32),
+            false => stored.map(|scale| scale.abs() as f32),
         };
         if let Some(axis) = scale.iter().position(|s| !s.is_finite()) {
             self.drop_row(element, || {
@@ -292,9 +320,9 @@ impl Rows<'_> {
         self.positions[at] = Vec3::from_slice(&single[..3]);
         self.scales[at] = Vec3::from_array(scale);
         self.rotations[at] = rotation.unwrap_or(Quat::IDENTITY);
-        self.opacities[at] = match self.stored {
-            ColumnForm::Logarithms => (1.0 / (1.0 + (-row[OPACITY]).exp())) as f32,
-            _ => row[OPACITY].clamp(0.0, 1.0) as f32,
+        self.opacities[at] = match self.stored.has_logits() {
+            true => (1.0 / (1.0 + (-row[OPACITY]).exp())) as f32,
+            false => row[OPACITY].clamp(0.0, 1.0) as f32,
         };
         self.sh[at * numbers..][..numbers].copy_from_slice(&single[SH..]);
         for ((values, single), &value) in self.properties.iter_mut().zip(&row[SLOTS..]) {
@@ -315,8 +343,8 @@ impl Rows<'_> {
     /// infinity, and the logarithm of scale 0 as its negative.
     fn is_limit(&self, slot: usize, value: f32) -> bool {
         match slot {
-            OPACITY => self.stored == ColumnForm::Logarithms && value.is_infinite(),
-            SCALES..ROTATION => self.stored != ColumnForm::Plain && value == f32::NEG_INFINITY,
+            OPACITY => self.stored.has_logits() && value.is_infinite(),
+            SCALES..ROTATION => self.stored.has_logarithms() && value == f32::NEG_INFINITY,
             _ => false,
         }
     }
@@ -324,8 +352,8 @@ impl Rows<'_> {
     /// True for what is put right: such an infinity, a negative scale, an opacity beyond 0 and 1.
     fn is_repaired(&self, slot: usize, value: f64) -> bool {
         let is_wrong = match slot {
-            OPACITY => self.stored != ColumnForm::Logarithms && !(0.0..=1.0).contains(&value),
-            SCALES..ROTATION => self.stored == ColumnForm::Plain && value < 0.0,
+            OPACITY => !self.stored.has_logits() && !(0.0..=1.0).contains(&value),
+            SCALES..ROTATION => !self.stored.has_logarithms() && value < 0.0,
             _ => false,
         };
         is_wrong || self.is_limit(slot, value as f32)
@@ -381,129 +409,37 @@ pub(super) fn check_count(count: u64) -> Result<(), String> {
     }
 }
 
-/// An assembler with room for so many Gaussians, for which the file has bytes.
-pub(super) fn room(count: u64, sh_degree: u32, stored: ColumnForm) -> Result<Assembler, Failure> {
+/// An assembler with room for so many Gaussians, for which the file has bytes. Of spherical harmonics of degree 4 it has room for
+/// those that are drawn, and says so.
+pub(super) fn room(count: u64, degree: u32, stored: ColumnForm) -> Result<Assembler, Failure> {
+    let mut assembler = room_with(count, degree.min(MAX_SH_DEGREE), stored, Vec::new())?;
+    if degree > MAX_SH_DEGREE {
+        assembler.report.note(DEGREE_4.into());
+    }
+    Ok(assembler)
+}
+
+/// The same with room for properties, whose slots follow on those of a Gaussian.
+pub(super) fn room_with(
+    count: u64,
+    sh_degree: u32,
+    stored: ColumnForm,
+    properties: Vec<Property>,
+) -> Result<Assembler, Failure> {
     check_count(count)?;
-    let assembler = Assembler::with_room(count, sh_degree, Vec::new());
+    let assembler = Assembler::with_room(count, sh_degree, properties);
     let assembler = assembler.ok_or_else(|| Failure::Memory(counted(count, "Gaussian")))?;
     Ok(assembler.stored(stored))
 }
 
-/// The degree of spherical harmonics of which a Gaussian has so many numbers above degree 0.
+/// The note on spherical harmonics of degree 4, which are drawn to degree 3.
+pub(super) const DEGREE_4: &str =
+    "left out the spherical harmonics of degree 4, which are not drawn";
+
+/// The degree of spherical harmonics, 0 to 4, of which a Gaussian has so many numbers above degree 0.
 pub(super) fn degree_of(rest: usize) -> Option<u32> {
-    (0..=3).find(|&degree| 3 * (sh_coefficients(degree) - 1) == rest)
+    (0..=4).find(|&degree| 3 * (sh_coefficients(degree) - 1) == rest)
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn row() -> [f64; SLOTS] {
-        let mut row = [0.0; SLOTS];
-        row[6] = 1.0;
-        row
-    }
-
-    fn load(rows: &[[f64; SLOTS]]) -> (Gaussians, LoadReport) {
-        load_as(rows, ColumnForm::Logarithms)
-    }
-
-    fn load_as(rows: &[[f64; SLOTS]], stored: ColumnForm) -> (Gaussians, LoadReport) {
-        let made = room(rows.len() as u64, 0, stored).and_then(|room| {
-            room.make(|number, row| {
-                *row = rows[number];
-                Ok(())
-            })
-        });
-        let Ok(made) = made else { panic!("no memory") };
-        let (loaded, _) = made.finish();
-        (loaded.gaussians, loaded.report)
-    }
-
-    #[test]
-    fn quaternions_of_any_length_are_normalised() {
-        for length in [1e-300, 1e-40, 1e-25, 0.03, 1.0, 1.93, 1e25, 3e37] {
-            let mut r = row();
-            (r[6], r[7], r[8], r[9]) = (length, -length, length, -length);
-            let (gaussians, report) = load(&[r]);
-            assert!(report.is_clean());
-            assert_eq!(
-                gaussians.rotations()[0],
-                Quat::from_xyzw(-0.5, 0.5, -0.5, 0.5)
-            );
-        }
-    }
-
-    #[test]
-    fn a_zero_quaternion_is_repaired_and_counted() {
-        let mut r = row();
-        r[6] = -0.0;
-        let (gaussians, report) = load(&[row(), r]);
-        assert_eq!(gaussians.rotations()[1], Quat::IDENTITY);
-        assert_eq!((report.repaired, report.dropped), (1, 0));
-        assert_eq!(report.first_repaired[0].element, 1);
-    }
-
-    #[test]
-    fn extreme_opacities_and_scales_stay_finite() {
-        let mut rows = [row(), row()];
-        rows[0][10] = 1000.0;
-        rows[1][10] = -1000.0;
-        rows[1][3] = -1e30;
-        rows[1][4] = 88.7;
-        let (gaussians, report) = load(&rows);
-        assert!(report.is_clean());
-        assert_eq!(gaussians.opacities(), [1.0, 0.0]);
-        assert_eq!(gaussians.scales()[1].x, 0.0);
-        assert!(gaussians.scales()[1].y > 1e38);
-    }
-
-    #[test]
-    fn infinite_logits_and_logarithms_of_zero_are_taken_at_their_word() {
-        let mut rows = [row(), row(), row()];
-        rows[0][OPACITY] = f64::INFINITY;
-        rows[1][OPACITY] = f64::NEG_INFINITY;
-        rows[2][SCALES + 2] = f64::NEG_INFINITY;
-        let (gaussians, report) = load(&rows);
-        assert_eq!((gaussians.len(), report.repaired), (3, 3));
-        assert_eq!(gaussians.opacities(), [1.0, 0.0, 0.5]);
-        assert_eq!(gaussians.scales()[2], Vec3::new(1.0, 1.0, 0.0));
-        assert_eq!(
-            report.first_repaired[0].reason,
-            "opacity is inf, taken as the opacity 1"
-        );
-    }
-
-    #[test]
-    fn plain_scales_and_opacities_are_taken_as_they_are() {
-        let mut rows = [row(), row(), row()];
-        (rows[0][SCALES], rows[0][OPACITY]) = (0.5, 0.25);
-        (rows[1][SCALES], rows[1][OPACITY]) = (-0.5, 1.0);
-        rows[2][OPACITY] = 1.5;
-        let (gaussians, report) = load_as(&rows, ColumnForm::Plain);
-        assert_eq!(gaussians.scales()[0], Vec3::new(0.5, 0.0, 0.0));
-        assert_eq!(gaussians.scales()[1], gaussians.scales()[0]);
-        assert_eq!(gaussians.opacities(), [0.25, 1.0, 1.0]);
-        assert_eq!((report.repaired, report.dropped), (2, 0));
-    }
-
-    #[test]
-    fn what_is_not_finite_is_dropped_with_its_property_named() {
-        for (slot, value, named) in [
-            (0, f64::NAN, "x is NaN"),
-            (4, 100.0, "scale_1"),
-            (5, f64::INFINITY, "scale_2 is inf"),
-            (9, 1e39, "rot_3 is 1e39, beyond"),
-            (10, f64::NAN, "opacity is NaN"),
-            (13, f64::NAN, "f_dc_2"),
-        ] {
-            let mut r = row();
-            r[slot] = value;
-            let (gaussians, report) = load(&[row(), r, row()]);
-            assert_eq!((gaussians.len(), report.dropped), (2, 1));
-            assert_eq!(report.first_dropped[0].element, 1);
-            let reason = &report.first_dropped[0].reason;
-            assert!(reason.contains(named), "{reason}");
-        }
-    }
-}
+mod tests;

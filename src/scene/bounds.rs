@@ -20,10 +20,11 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// Bounds that hold all but the outermost percent of the centres at each end of each axis, wider by the median
-    /// Gaussian's largest standard deviation. They are never empty: an empty scene has the unit box about the origin.
+    /// Returns the robust bounds of a scene: a box without the outermost percent of the centres at each end of each axis,
+    /// widened by the largest standard deviation of the median Gaussian. The box is never empty: an empty scene has the unit
+    /// box about the origin.
     ///
-    /// Of a scene's layers only the visible ones count, where they are placed.
+    /// Only the visible layers of a scene count, in their placements.
     pub fn of<'a>(scene: impl Into<Scene<'a>>) -> Self {
         let scene = scene.into();
         let axis = |axis: DVec3| extent_along(scene.clone(), axis);
@@ -34,17 +35,17 @@ impl Bounds {
         }
     }
 
-    /// The middle.
+    /// Returns the middle of the box.
     pub fn centre(&self) -> DVec3 {
         (self.min + self.max) / 2.0
     }
 
-    /// Half the diagonal.
+    /// Returns half the diagonal of the box.
     pub fn radius(&self) -> f64 {
         (self.max - self.min).length() / 2.0
     }
 
-    /// The eight corners.
+    /// Returns the eight corners of the box.
     pub fn corners(&self) -> [DVec3; 8] {
         std::array::from_fn(|i| {
             let pick = |bit: usize, min: f64, max: f64| if i & bit == 0 { min } else { max };
@@ -57,9 +58,9 @@ impl Bounds {
     }
 }
 
-/// Smallest and largest `normal . x` of the scene, with the outermost percent of the centres left out at each end and
-/// the median Gaussian's largest standard deviation added: where a plane that sweeps along `normal` enters and leaves.
-/// The first is always less than the second; an empty scene is the unit box about the origin.
+/// Returns the smallest and largest `normal . x` of the scene: where a plane that sweeps along `normal` enters and leaves it.
+/// The outermost percent of the centres is left out at each end, and the largest standard deviation of the median Gaussian is
+/// added. The first number is always less than the second. An empty scene counts as the unit box about the origin.
 pub fn extent_along<'a>(scene: impl Into<Scene<'a>>, normal: DVec3) -> (f64, f64) {
     let scene = scene.into();
     let mut along: Vec<f64> = Vec::new();
@@ -112,82 +113,4 @@ fn widened(low: f64, high: f64, by: f64) -> (f64, f64) {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::placement::Placement;
-    use crate::{Gaussians, LayerState};
-    use glam::{DQuat, Quat, Vec3};
-
-    fn line(positions: impl Iterator<Item = f32>) -> Gaussians {
-        let mut line = Gaussians::default();
-        for x in positions {
-            let at = Vec3::new(x, 0.0, 0.0);
-            line.push(at, Vec3::ZERO, Quat::IDENTITY, 1.0, &[0.0; 3]);
-        }
-        line
-    }
-
-    #[test]
-    fn far_strays_do_not_count() {
-        let scene = line(
-            (0..=1000)
-                .map(|i| i as f32 / 1000.0)
-                .chain([1e30, -1e30, 1e6]),
-        );
-        let bounds = Bounds::of(&scene);
-        assert!(
-            (bounds.min.x - 0.01).abs() < 0.003 && (bounds.max.x - 0.99).abs() < 0.003,
-            "{bounds:?}"
-        );
-        let (low, high) = extent_along(&scene, DVec3::new(-2.0, 1.0, 0.0));
-        assert!(
-            (low + 1.98).abs() < 0.008 && (high + 0.02).abs() < 0.008,
-            "{low} {high}"
-        );
-    }
-
-    #[test]
-    fn layers_count_where_they_are_placed_and_visible() {
-        let scene = line((0..=1000).map(|i| i as f32 / 1000.0));
-        let turn = DQuat::from_axis_angle(DVec3::Z, 90_f64.to_radians());
-        let placement = Placement::new(DVec3::new(5.0, 0.0, 0.0), turn, 2.0).unwrap();
-        let placed = LayerState::default().placement(placement);
-        let hidden = LayerState::default().visible(false);
-        let layers = [placed, hidden].map(|state| Layer::new("line", &scene).with(state));
-        let bounds = Bounds::of(Scene::from_iter(layers));
-        // From (5, 0, 0) along y.
-        let corners = [DVec3::new(5.0, 0.02, 0.0), DVec3::new(5.0, 1.98, 0.0)];
-        assert!(bounds.min.distance(corners[0]) < 0.01, "{bounds:?}");
-        assert!(bounds.max.distance(corners[1]) < 0.01, "{bounds:?}");
-    }
-
-    #[test]
-    fn no_scene_has_empty_bounds() {
-        for scene in [
-            line([].into_iter()),
-            line([3.0].into_iter()),
-            line([3.0, 4.0].into_iter()),
-            line([1e30; 9].into_iter()),
-        ] {
-            let bounds = Bounds::of(&scene);
-            assert!(
-                bounds.min.cmplt(bounds.max).all() && bounds.radius() > 0.0,
-                "{bounds:?}"
-            );
-            assert!(bounds.centre().is_finite());
-        }
-        let unit = Bounds::of(&Gaussians::default());
-        assert!((unit.min + 0.5).length() < 1e-5 && (unit.max - 0.5).length() < 1e-5);
-    }
-
-    #[test]
-    fn corners_are_all_eight() {
-        let bounds = Bounds {
-            min: DVec3::ZERO,
-            max: DVec3::ONE,
-        };
-        let corners = bounds.corners();
-        assert_eq!(corners.iter().copied().sum::<DVec3>(), DVec3::splat(4.0));
-        assert_eq!(corners[7], DVec3::ONE);
-    }
-}
+mod tests;

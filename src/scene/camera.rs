@@ -21,16 +21,17 @@ use rara_base::setters;
     serde(rename_all = "lowercase")
 )]
 pub enum Projection {
-    /// A pinhole: lines of sight pass through the eye, and a point is seen at `(fx X / Z + cx, fy Y / Z + cy)`.
+    /// A pinhole camera: lines of sight pass through the eye, and a point is seen at `(fx X / Z + cx, fy Y / Z + cy)`.
     #[default]
     Perspective,
-    /// Lines of sight run along the view axis, and a point is seen at `(fx X + cx, fy Y + cy)`, as large at every
-    /// depth. The footprint of a Gaussian is exact then, whatever its size, and so is its share in mode `exact`.
+    /// A camera without perspective: lines of sight are parallel to the view axis, and a point is seen at `(fx X + cx, fy Y +
+    /// cy)` at every depth. The footprint of a Gaussian is then exact, whatever its size, and so is its share in mode `exact`.
     Orthographic,
 }
 
 setters! {
-    /// A camera and the size of its picture. All in f64: the GPU gets single-precision values derived from it.
+    /// A camera and the size of its picture, in double precision. The GPU gets values in single precision that are computed
+    /// from it.
     #[derive(Debug, Clone, Copy, PartialEq)]
     #[non_exhaustive]
     pub struct Camera {
@@ -38,31 +39,33 @@ setters! {
         pub width: u32,
         /// Picture height, pixels.
         pub height: u32,
-        /// Focal length along x, pixels; of an orthographic camera the pixels of a world unit.
+        /// Focal length along x, in pixels; for an orthographic camera, in pixels per world unit.
         pub fx: f64,
-        /// Focal length along y, pixels; of an orthographic camera the pixels of a world unit.
+        /// Focal length along y, in pixels; for an orthographic camera, in pixels per world unit.
         pub fy: f64,
-        /// Principal point, pixels from the picture's left edge (`width / 2` is the middle).
+        /// The x of the principal point, in pixels from the picture's left edge (`width / 2` is the middle).
         pub cx: f64,
-        /// Principal point, pixels from the picture's top edge (`height / 2` is the middle).
+        /// The y of the principal point, in pixels from the picture's top edge (`height / 2` is the middle).
         pub cy: f64,
-        /// The eye's position, world units. An orthographic camera sees the same from every point of a line along its view
-        /// axis, but for what is nearer than its [near cut](Self::near_cut). Depths count from the eye here too, in single
-        /// precision: an eye not much farther away than the scene is large keeps what lies close together in order.
+        /// The position of the eye, in world units. An orthographic camera sees the same picture from every point of a line
+        /// along its view axis, except for splats that are nearer than its [near cut](Self::near_cut). Its depths count from
+        /// the eye too, in single precision. Keep the eye at most a few scene sizes away, so that splats that are close
+        /// together are sorted correctly.
         pub eye: DVec3,
-        /// World to camera rotation (rows are the camera's right, down and forward axes in the world). With a determinant of
-        /// -1, as [`of_projection`](Self::of_projection) gives a left-handed host, the picture is that of a mirrored world.
+        /// The rotation from world to camera. Its rows are the camera's right, down and forward axes in the world. If its
+        /// determinant is -1, as [`of_projection`](Self::of_projection) returns for a left-handed host, the picture shows the
+        /// world mirrored.
         pub rotation: DMat3,
         /// How points become pixels.
         pub projection: Projection,
-        /// The depth, world units along the view axis, from which on the scene is kept: a plane across the axis that moves with
-        /// the camera and cuts every layer, whatever else cuts it. Splats are cut as by any other plane, by the mode of the
-        /// [settings](crate::settings::Settings); in mode `none` it is not asked.
+        /// The depth, in world units along the view axis, of a clip plane that cuts away everything nearer. The plane is
+        /// perpendicular to the axis, moves with the camera and cuts every layer, in addition to all clips. It cuts splats like
+        /// any other plane, by the mode of the [settings](crate::settings::Settings); in mode `none` it has no effect.
         pub clip_near: Option<f64>,
-        /// The depth up to which the scene is kept, likewise.
+        /// The depth of a clip plane that cuts away everything deeper. It is like [`clip_near`](Self::clip_near) otherwise.
         pub clip_far: Option<f64>,
-        /// The depth, world units, from which on splats are drawn: those whose centres are nearer are left out whole. Without
-        /// one it is 0.2 units of the scene, as in 3DGS, however large these are in the world.
+        /// The near cut: splats whose centres are nearer than this depth, in world units, are not drawn. `None` means 0.2 units
+        /// of the scene, as in 3DGS, whatever the scale of the scene in the world.
         pub near_cut: Option<f64>,
     }
 }
@@ -71,7 +74,7 @@ impl Camera {
     /// Largest picture side, pixels. Vulkan guarantees 4096; every driver we know has at least this.
     pub const MAX_SIZE: u32 = 16384;
 
-    /// A camera at `eye` that looks at `target`. `up` points up in the picture (the default world has y down: `-Y`).
+    /// Makes a camera at `eye` that looks at `target`. `up` points up in the picture (the default world has y down: `-Y`).
     /// `fov_y` is the full vertical field of view in degrees.
     pub fn look_at(
         eye: DVec3,
@@ -90,7 +93,7 @@ impl Camera {
         Self::centred(eye, rotation, focal, (width, height)).checked()
     }
 
-    /// An orthographic camera at `eye` that looks at `target`, whose picture is `height` world units high. `up` is as for
+    /// Makes an orthographic camera at `eye` that looks at `target`. Its picture is `height` world units high. `up` is as for
     /// [`look_at`](Self::look_at).
     ///
     /// ```
@@ -142,19 +145,15 @@ impl Camera {
         }
     }
 
-    /// A camera from a rigid world-to-camera matrix. The rotation part is made orthonormal when it is nearly so
-    /// already (files round it); anything else (scale, shear, mirror) is an error.
+    /// Makes a camera from a rigid world-to-camera matrix. A rotation that is only nearly orthonormal, because a file has
+    /// rounded it, is made orthonormal. A scale, a shear or a mirror is an error.
     pub fn from_world_to_camera(
         matrix: DMat4,
         (fx, fy, cx, cy): (f64, f64, f64, f64),
         (width, height): (u32, u32),
     ) -> Result<Self> {
         let rows = DMat3::from_mat4(matrix).transpose();
-        let error = (rows.transpose() * rows - DMat3::IDENTITY)
-            .to_cols_array()
-            .iter()
-            .fold(0.0_f64, |a, x| a.max(x.abs()));
-        if !matrix.is_finite() || error.is_nan() || error > 1e-3 || rows.determinant() < 0.0 {
+        if !matrix.is_finite() || oblique(rows) > 1e-3 || rows.determinant() < 0.0 {
             return Err(Error::Invalid("the camera's matrix is not a rotation and a translation (scale, shear and mirrors are not supported)".into()));
         }
         let forward = rows.z_axis.normalize();
@@ -184,7 +183,7 @@ impl Camera {
         let focal_ok = |f: f64| f.is_finite() && f > 0.0;
         if !(focal_ok(self.fx) && focal_ok(self.fy) && self.cx.is_finite() && self.cy.is_finite()) {
             return Err(Error::Invalid(
-                "the camera's focal lengths must be positive and its principal point finite".into(),
+                "the camera's focal lengths must be finite and above 0, and its principal point finite".into(),
             ));
         }
         // Finite numbers of a file can still sum up beyond the range.
@@ -194,7 +193,7 @@ impl Camera {
         Ok(self)
     }
 
-    /// The same camera for a picture of another size: focal lengths and principal point scale with it.
+    /// Returns the same camera for a picture of another size. Focal lengths and principal point scale with the size.
     pub fn resized(self, (width, height): (u32, u32)) -> Result<Self> {
         let (sx, sy) = (
             f64::from(width) / f64::from(self.width),
@@ -212,7 +211,7 @@ impl Camera {
         .checked()
     }
 
-    /// The planes at [`clip_near`](Self::clip_near) and [`clip_far`](Self::clip_far).
+    /// Returns the planes at [`clip_near`](Self::clip_near) and [`clip_far`](Self::clip_far).
     ///
     /// # Errors
     /// [`Error::Invalid`] for depths that are not finite, and where nothing lies between the two.
@@ -275,12 +274,12 @@ impl Camera {
         )))
     }
 
-    /// World to camera, as one matrix.
+    /// Returns the view matrix, from world to camera.
     pub fn world_to_camera(&self) -> DMat4 {
         DMat4::from_mat3_translation(self.rotation, -(self.rotation * self.eye))
     }
 
-    /// The same view as a scene with this placement sees it.
+    /// Returns the camera in the space of a scene that has this placement.
     #[must_use]
     pub fn in_scene(&self, placement: &Placement) -> Self {
         if *placement == Placement::IDENTITY {
@@ -304,6 +303,15 @@ impl Camera {
     }
 }
 
+/// How far axes are from unit length and from being square to each other; infinitely far if they are no numbers.
+pub(crate) fn oblique(axes: DMat3) -> f64 {
+    let errors = (axes.transpose() * axes - DMat3::IDENTITY).to_cols_array();
+    errors.iter().fold(0.0, |most, error| match error.is_nan() {
+        true => f64::INFINITY,
+        false => f64::max(most, error.abs()),
+    })
+}
+
 /// The world to camera rotation of a camera at `eye` that looks at `target` and has `up` upwards in its picture.
 fn facing(eye: DVec3, target: DVec3, up: DVec3) -> Result<DMat3> {
     if !(eye.is_finite() && target.is_finite() && up.is_finite()) {
@@ -312,8 +320,9 @@ fn facing(eye: DVec3, target: DVec3, up: DVec3) -> Result<DMat3> {
         ));
     }
     let forward = (target - eye).try_normalize();
-    let forward = forward
-        .ok_or_else(|| Error::Invalid("the camera's eye and target are the same point".into()))?;
+    let forward = forward.ok_or_else(|| {
+        Error::Invalid("the camera's eye and target are the same point; give two points".into())
+    })?;
     let right = forward
         .cross(up)
         .try_normalize()

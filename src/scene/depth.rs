@@ -6,10 +6,10 @@ use crate::camera::Projection;
 use crate::placement::Placement;
 use rara_base::error::{Error, Result};
 
-/// The value that a depth buffer holds at a depth `z` along the view axis, world units, with viewports whose depths go from
-/// 0 to 1: `offset + scale / z`, which is every perspective projection, or, of an [orthographic](Self::orthographic) one,
-/// `offset - scale z`. Nearer is more ("reversed") where `scale` is positive. The camera of a frame has the same
-/// projection.
+/// A map from depths `z` along the view axis, in world units, to the values of a depth buffer, for viewports whose depths go
+/// from 0 to 1. In perspective the value is `offset + scale / z`, and in an [orthographic](Self::orthographic) projection
+/// `offset - scale z`. If `scale` is positive, nearer points have larger values ("reversed"). The camera of a frame must have
+/// the same projection.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DepthMap {
     projection: Projection,
@@ -18,7 +18,7 @@ pub struct DepthMap {
 }
 
 impl DepthMap {
-    /// The map with these numbers, for a camera of this projection.
+    /// Makes the map with these numbers, for a camera of this projection.
     ///
     /// # Errors
     /// [`Error::Invalid`] unless both are finite and `scale` is not zero.
@@ -35,7 +35,7 @@ impl DepthMap {
         })
     }
 
-    /// 0 at `near`, 1 at `far`, which may be infinite.
+    /// Makes the map that is 0 at `near` and 1 at `far`, which may be infinite.
     ///
     /// # Errors
     /// [`Error::Invalid`] unless `0 < near < far`.
@@ -48,7 +48,7 @@ impl DepthMap {
         })
     }
 
-    /// 1 at `near`, 0 at `far`, which may be infinite.
+    /// Makes the map that is 1 at `near` and 0 at `far`, which may be infinite.
     ///
     /// # Errors
     /// [`Error::Invalid`] unless `0 < near < far`.
@@ -66,8 +66,8 @@ impl DepthMap {
         })
     }
 
-    /// Of an orthographic camera: 0 at the depth `zero`, 1 at the depth `one`, and linear between them. Nearer is more where
-    /// `one` is the nearer one.
+    /// Makes the map of an orthographic camera: 0 at the depth `zero`, 1 at the depth `one`, and linear between them. Nearer
+    /// depths have larger values if `one` is less than `zero`.
     ///
     /// # Errors
     /// [`Error::Invalid`] unless both are finite and differ.
@@ -85,7 +85,7 @@ impl DepthMap {
         })
     }
 
-    /// The map of a projection matrix for column vectors and clip depths from 0 to w, whose view looks along +z or -z.
+    /// Returns the map of a projection matrix for column vectors and clip depths from 0 to w. The view looks along +z or -z.
     ///
     /// # Errors
     /// [`Error::Invalid`] if it is no perspective projection. The matrix of an orthographic one does not say which way its
@@ -111,7 +111,7 @@ impl DepthMap {
         })
     }
 
-    /// The same buffer as a scene with this placement sees it: its depths are then in the scene's units, like those of
+    /// Returns the map for depths in the units of a scene that has this placement, like those of
     /// [`Camera::in_scene`](crate::camera::Camera::in_scene).
     #[must_use]
     pub fn in_scene(self, placement: &Placement) -> Self {
@@ -122,27 +122,27 @@ impl DepthMap {
         Self { scale, ..self }
     }
 
-    /// How the camera of such depths sees.
+    /// Returns the projection of the camera of these depths.
     pub fn projection(&self) -> Projection {
         self.projection
     }
 
-    /// The buffer's value infinitely far away or, of an orthographic camera, at the eye.
+    /// Returns the value of the buffer infinitely far away or, for an orthographic camera, at the eye.
     pub fn offset(&self) -> f64 {
         self.offset
     }
 
-    /// What the buffer's value changes by: for the inverse of a depth in perspective, for a depth's negative without.
+    /// Returns the change of the value: per 1/depth in perspective, and per negative depth in an orthographic projection.
     pub fn scale(&self) -> f64 {
         self.scale
     }
 
-    /// True when nearer is more.
+    /// Returns true if nearer points have larger values.
     pub fn is_reversed(&self) -> bool {
         self.scale > 0.0
     }
 
-    /// The buffer's value for a depth along the view axis, kept within 0 to 1.
+    /// Returns the value of the buffer for a depth along the view axis, clamped to 0 to 1.
     pub fn at(&self, depth: f64) -> f64 {
         let falling = match self.projection {
             Projection::Perspective => self.scale / depth,
@@ -171,74 +171,4 @@ impl DepthMap {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use glam::DVec4;
-
-    #[test]
-    fn near_and_far_are_the_ends() {
-        for (near, far) in [(0.1, 1000.0), (1.0, 2.0), (0.5, f64::INFINITY)] {
-            let far_enough = far.min(1e12);
-            let [ordinary, reversed] = [DepthMap::ordinary, DepthMap::reversed]
-                .map(|make| make(near, far).expect("0 < near < far"));
-            for (map, ends) in [(ordinary, [0.0, 1.0]), (reversed, [1.0, 0.0])] {
-                assert!((map.at(near) - ends[0]).abs() < 1e-12);
-                assert!((map.at(far_enough) - ends[1]).abs() < 1e-11);
-                assert_eq!(map.at(near / 2.0), ends[0], "kept within the buffer");
-                assert_eq!(map.is_reversed(), ends[0] == 1.0);
-            }
-        }
-        for (near, far) in [(0.0, 1.0), (1.0, 1.0), (-1.0, 1.0), (f64::NAN, 1.0)] {
-            assert!(DepthMap::ordinary(near, far).is_err(), "{near} {far}");
-        }
-    }
-
-    #[test]
-    fn orthographic_depths_are_linear_between_their_ends() {
-        for (zero, one) in [(-2.0, 6.0), (6.0, -2.0)] {
-            let map = DepthMap::orthographic(zero, one).expect("two depths");
-            let values = [zero, one, 2.0, 2.0 * zero - one].map(|z| map.at(z));
-            assert_eq!(values, [0.0, 1.0, 0.5, 0.0], "kept within the buffer");
-            assert_eq!(map.is_reversed(), one < zero);
-            assert!(map.check(Projection::Orthographic).is_ok());
-            assert!(map.check(Projection::Perspective).is_err());
-        }
-        for (zero, one) in [(1.0, 1.0), (0.0, f64::INFINITY), (f64::NAN, 1.0)] {
-            assert!(DepthMap::orthographic(zero, one).is_err(), "{zero} {one}");
-        }
-    }
-
-    #[test]
-    fn a_projection_matrix_says_the_same() {
-        // Focal lengths do not matter; the view looks along -z in the first and along +z in the second.
-        let matrix = |z: f64, offset: f64, w: f64| {
-            let (x, y) = (DVec4::X * 1.3, DVec4::Y * 0.9);
-            DMat4::from_cols(x, y, DVec4::new(0.1, 0.0, z, w), DVec4::Z * offset)
-        };
-        let (near, far) = (0.1, 50.0);
-        let away = matrix(far / (near - far), near * far / (near - far), -1.0);
-        let turned = matrix(near / (near - far), near * far / (far - near), 1.0);
-        let [map, reversed] =
-            [away, turned].map(|matrix| DepthMap::of_projection(&matrix).expect("perspective"));
-        assert!(map.at(near) < 1e-12 && map.at(far) > 1.0 - 1e-12);
-        for z in [near, 0.7, 12.0, far] {
-            let clip = away * DVec4::new(0.3, -0.2, -z, 1.0);
-            assert!((map.at(z) - clip.z / clip.w).abs() < 1e-12);
-            let clip = turned * DVec4::new(0.3, -0.2, z, 1.0);
-            assert!((reversed.at(z) - clip.z / clip.w).abs() < 1e-12);
-        }
-        assert!(reversed.is_reversed() && !map.is_reversed());
-        let flat = DMat4::from_scale(glam::DVec3::new(1.0, 1.0, 0.1));
-        assert!(DepthMap::of_projection(&flat).is_err());
-    }
-
-    #[test]
-    fn a_scene_of_another_scale_has_the_same_depths() {
-        let map = DepthMap::reversed(0.1, 100.0).expect("0 < near < far");
-        let placement = Placement::new(glam::DVec3::ONE, glam::DQuat::IDENTITY, 4.0);
-        let placement = placement.expect("a scale");
-        assert_eq!(map.in_scene(&placement).at(2.0), map.at(8.0));
-        let flat = DepthMap::orthographic(-3.0, 13.0).expect("two depths");
-        assert_eq!(flat.in_scene(&placement).at(2.0), flat.at(8.0));
-    }
-}
+mod tests;

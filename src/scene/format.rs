@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// The format of a scene file, which [`load`](super::load) finds by what is in the file.
+/// The format of a scene file, which [`load`](super::load) recognises by the contents of the file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Format {
@@ -18,8 +18,10 @@ pub enum Format {
     Spz,
     /// PlayCanvas' SOG: WebP pictures and a `meta.json`, in a `.sog` archive or a folder.
     Sog,
-    /// PlayCanvas' streamed SOG: a `lod-meta.json` beside folders of SOG, of which the finest level is read.
+    /// PlayCanvas' streamed SOG: a `lod-meta.json` beside folders of SOG, or a `.ssog` archive of them, of which the finest level is read.
     StreamedSog,
+    /// SuperSplat's `.ssproj`: an archive of a document and of PLYs, which it places, colours and hides.
+    SuperSplat,
     /// glTF 2.0, `.glb` or `.gltf`, with `KHR_gaussian_splatting`.
     Gltf,
 }
@@ -46,7 +48,8 @@ impl Format {
         Ksplat => ".ksplat", ".ksplat";
         Spz => ".spz", ".spz";
         Sog => "SOG", ".sog";
-        StreamedSog => "streamed SOG";
+        StreamedSog => "streamed SOG", ".ssog";
+        SuperSplat => "SuperSplat project", ".ssproj";
         Gltf => "glTF", "glTF with KHR_gaussian_splatting";
     }
 
@@ -58,7 +61,7 @@ impl Format {
         endings.any(|ending| ending.starts_with('.') && name.ends_with(ending))
     }
 
-    /// The files that are read, for messages and help.
+    /// Returns the names of the formats that can be read, for messages and help.
     pub fn readable() -> String {
         match Self::FILES {
             [files @ .., last] => format!("{} and {last}", files.join(", ")),

@@ -15,35 +15,35 @@ const UNIT: f32 = 1e-3;
 /// A set of 3D Gaussians, one array per attribute.
 ///
 /// [`new`](Self::new) takes them as whole arrays, [`push`](Self::push) one by one, and files are read by
-/// [`scene::load`](crate::load). Whatever is done to them, the arrays fit each other. Everything in them is finite,
-/// rotations are unit quaternions, scales are not negative and opacities between 0 and 1: the loaders repair or drop what
-/// is not and report it, and `new` refuses it, so that no later stage has to ask.
+/// [`scene::load`](crate::load). The arrays always have matching lengths. Everything in them is finite, rotations are unit
+/// quaternions, scales are not negative and opacities between 0 and 1: the loaders repair or drop what is not and report it,
+/// and `new` refuses it, so that no later stage has to ask.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Gaussians(GaussianArrays);
 
 /// The arrays that [`Gaussians`] are made of, all of the same length except [`sh`](Self::sh).
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct GaussianArrays {
-    /// What the centres are relative to: see [`Gaussians::origin`].
+    /// The point that the centres are relative to: see [`Gaussians::origin`].
     pub origin: DVec3,
-    /// Centres, world units from the origin.
+    /// The centres, in world units from the origin.
     pub positions: Vec<Vec3>,
-    /// Standard deviations along the Gaussian's own axes, world units (linear, not logarithms). Zero is allowed.
+    /// The standard deviations along each Gaussian's own axes, in world units (not logarithms). Zero is allowed.
     pub scales: Vec<Vec3>,
-    /// Rotation from the Gaussian's own axes to the world, unit quaternions.
+    /// The rotations from each Gaussian's own axes to the world, as unit quaternions.
     pub rotations: Vec<Quat>,
-    /// Opacity at the centre, 0 to 1 (not logits).
+    /// The opacities at the centres, 0 to 1 (not logits).
     pub opacities: Vec<f32>,
     /// Degree of the spherical harmonics, 0 to 3.
     pub sh_degree: u32,
-    /// Spherical harmonics, `[Gaussian][coefficient][r, g, b]`, `(sh_degree + 1)^2` coefficients a Gaussian.
+    /// The spherical harmonics, `[Gaussian][coefficient][r, g, b]`, with `(sh_degree + 1)^2` coefficients per Gaussian.
     pub sh: Vec<f32>,
     /// How they were trained.
     pub training: Training,
 }
 
 impl Gaussians {
-    /// Gaussians of whole arrays.
+    /// Makes Gaussians of whole arrays.
     ///
     /// # Errors
     /// [`Error::Invalid`] names the array whose length is not that of `positions`, or the first number in it that cannot
@@ -74,7 +74,7 @@ impl Gaussians {
         Some(Self(arrays))
     }
 
-    /// The arrays, to be changed and made into Gaussians again.
+    /// Returns the arrays, which can be changed and made into Gaussians again.
     pub fn into_arrays(self) -> GaussianArrays {
         self.0
     }
@@ -95,24 +95,25 @@ impl Gaussians {
         self.0.positions.len()
     }
 
-    /// True when there are none.
+    /// Returns true if there are no Gaussians.
     pub fn is_empty(&self) -> bool {
         self.0.positions.is_empty()
     }
 
-    /// What the centres are relative to, world units: they lie at `origin + position`. It is zero where single precision holds
-    /// them; far from zero, as in coordinates of a map, it has what they share in double precision. Whatever takes a
-    /// [layer](crate::Layer) counts it in; [`centre`](Self::centre) has both. Loaders find it.
+    /// Returns the point that the centres are relative to, in world units. A centre is at `origin + position`. The origin is
+    /// zero if single precision is enough for the centres. Far from zero, as in coordinates of a map, it is a point near all
+    /// centres, in double precision. All functions that take a [layer](crate::Layer) add it, and so does
+    /// [`centre`](Self::centre). Loaders set it.
     pub fn origin(&self) -> DVec3 {
         self.0.origin
     }
 
-    /// The centre of one, world units.
+    /// Returns the centre of one Gaussian, in world units.
     pub fn centre(&self, index: usize) -> DVec3 {
         self.0.origin + self.0.positions[index].as_dvec3()
     }
 
-    /// Moves all Gaussians at once, by no rounding: see [`origin`](Self::origin).
+    /// Sets the origin, which moves all Gaussians at once without rounding: see [`origin`](Self::origin).
     ///
     /// # Errors
     /// [`Error::Invalid`] where it is not finite.
@@ -152,19 +153,19 @@ impl Gaussians {
         &self.0.sh
     }
 
-    /// True for Gaussians that were trained antialiased, as by `--antialiasing` of 3DGS, `rasterize_mode antialiased` of
-    /// gsplat and nerfstudio, or Mip-Splatting. Each is then drawn with its opacity multiplied by
-    /// `sqrt(max(det S / det (S + L I), 0.000025))`, with the covariance `S` of its footprint and the
-    /// [low-pass](Self::low_pass) L, square pixels: what the
+    /// Returns true if the Gaussians were trained antialiased, as by `--antialiasing` of 3DGS, `rasterize_mode antialiased` of
+    /// gsplat and nerfstudio, or Mip-Splatting. Each is then drawn with its opacity multiplied by `sqrt(max(det S / det (S + L
+    /// I), 0.000025))`, with the covariance `S` of its footprint and the [low-pass](Self::low_pass) L, square pixels: what the
     /// low-pass makes larger than it is gets no brighter for it. Others are drawn as opaque as they are. Loaders find it in
     /// files that say so.
     pub fn is_antialiased(&self) -> bool {
         self.0.training.antialiased
     }
 
-    /// What is added to the variance of each footprint along either axis of the picture, square pixels. Gaussians look as they
-    /// did in training with the low-pass of their trainer: 0.3, as in 3DGS, gsplat and nerfstudio, or 0.1, as in Mip-Splatting
-    /// and in Brush where that trains antialiased. Loaders find it in files that say so, and by who wrote them.
+    /// Returns the low-pass: the variance, in square pixels, that is added to each footprint along both axes of the picture.
+    /// Gaussians look as they did in training with the low-pass of their trainer: 0.3, as in 3DGS, gsplat and nerfstudio, or
+    /// 0.1, as in Mip-Splatting and in Brush where that trains antialiased. Loaders find it in files that say so, and by who
+    /// wrote them.
     pub fn low_pass(&self) -> f32 {
         self.0.training.low_pass
     }
@@ -174,12 +175,12 @@ impl Gaussians {
         self.0.training
     }
 
-    /// Says whether they were trained antialiased, which holds for all of a set.
+    /// Sets whether the Gaussians of this set were trained antialiased.
     pub fn set_antialiased(&mut self, antialiased: bool) {
         self.0.training.antialiased = antialiased;
     }
 
-    /// Says how they were trained.
+    /// Sets how the Gaussians of this set were trained.
     ///
     /// # Errors
     /// [`Error::Invalid`] where the low-pass is one that cannot be drawn.
@@ -212,33 +213,33 @@ impl Gaussians {
         self.0.training = training;
     }
 
-    /// Centres, to be moved. Nothing checks what is written here and through the methods below: a number that
-    /// [`new`](Self::new) would refuse makes its Gaussian, and no other, look like anything or nothing.
+    /// Returns the centres, to change them. The numbers that are written here and through the methods below are not checked. A
+    /// number that [`new`](Self::new) would refuse can make its own Gaussian look wrong or vanish, but no other one.
     pub fn positions_mut(&mut self) -> &mut [Vec3] {
         &mut self.0.positions
     }
 
-    /// Standard deviations, to be changed.
+    /// Returns the standard deviations, to change them.
     pub fn scales_mut(&mut self) -> &mut [Vec3] {
         &mut self.0.scales
     }
 
-    /// Rotations, to be changed.
+    /// Returns the rotations, to change them.
     pub fn rotations_mut(&mut self) -> &mut [Quat] {
         &mut self.0.rotations
     }
 
-    /// Opacities, to be changed.
+    /// Returns the opacities, to change them.
     pub fn opacities_mut(&mut self) -> &mut [f32] {
         &mut self.0.opacities
     }
 
-    /// Spherical harmonics, to be changed.
+    /// Returns the spherical harmonics, to change them.
     pub fn sh_mut(&mut self) -> &mut [f32] {
         &mut self.0.sh
     }
 
-    /// Coefficients a colour channel: `(sh_degree + 1)^2`.
+    /// Returns the number of coefficients per colour channel: `(sh_degree + 1)^2`.
     pub fn sh_coefficients(&self) -> usize {
         sh_coefficients(self.0.sh_degree)
     }
@@ -269,7 +270,7 @@ impl Gaussians {
         self.0.sh.extend_from_slice(sh);
     }
 
-    /// Drops all but the first `count`; nothing happens if there are no more.
+    /// Drops all Gaussians but the first `count`. If there are no more, nothing happens.
     pub fn truncate(&mut self, count: usize) {
         let numbers = count.saturating_mul(3 * self.sh_coefficients());
         self.0.positions.truncate(count);
@@ -385,7 +386,7 @@ impl GaussianArrays {
         if self.sh_degree > MAX_SH_DEGREE {
             let degree = self.sh_degree;
             return Err(format!(
-                "sh_degree is {degree}: 0 to {MAX_SH_DEGREE} can be drawn"
+                "sh_degree is {degree}; it must be from 0 to {MAX_SH_DEGREE}"
             ));
         }
         let count = self.positions.len();
@@ -449,7 +450,7 @@ fn refuse<T: std::fmt::Debug>(
     }
 }
 
-/// Coefficients a colour channel for spherical harmonics up to `degree`.
+/// Returns the number of coefficients per colour channel for spherical harmonics up to `degree`.
 pub const fn sh_coefficients(degree: u32) -> usize {
     ((degree + 1) * (degree + 1)) as usize
 }

@@ -16,9 +16,9 @@ setters! {
     pub struct LayerState {
         /// The layer's placement in its scene.
         pub placement: Placement,
-        /// The factor of its Gaussians' opacities, 0 to 1.
+        /// The factor by which the opacities of its Gaussians are multiplied, 0 to 1.
         pub opacity: f32,
-        /// True when it is drawn. A hidden layer costs a test for each of its blocks of 256 Gaussians.
+        /// True if the layer is drawn. A hidden layer costs a test for each of its blocks of 256 Gaussians.
         pub visible: bool,
     }
 }
@@ -34,8 +34,8 @@ impl Default for LayerState {
 }
 
 impl LayerState {
-    /// Checks the state as the upload and `Renderer::configure` do, so that a mistake is
-    /// found earlier; `name` is the layer's, for the message.
+    /// Checks the state as the upload and `Renderer::configure` do, to find a mistake earlier. `name` is the name of the layer,
+    /// for the message.
     ///
     /// # Errors
     /// [`Error::Invalid`] for an opacity that is not 0 to 1, and for a placement whose scale single precision has not.
@@ -56,7 +56,7 @@ impl LayerState {
     }
 }
 
-/// That a frame can have the clip of a layer.
+/// Checks that a frame can use the clip of a layer.
 pub fn check_clip(name: &str, clip: Option<&Clip>) -> Result<()> {
     match clip.map(Clip::check) {
         Some(Err(error)) => Err(Error::Invalid(format!(
@@ -78,13 +78,13 @@ pub struct Layer<'a> {
 }
 
 impl<'a> Layer<'a> {
-    /// A layer of these Gaussians in the default state.
+    /// Makes a layer of these Gaussians in the default state.
     pub fn new(name: impl Into<String>, gaussians: &'a Gaussians) -> Self {
         Self::from_cow(name.into(), Cow::Borrowed(gaussians))
     }
 
-    /// A layer that owns its Gaussians. Who uploads it has no use for them afterwards: the upload frees them where it can,
-    /// so that they and their copy on the device are never in memory as a whole together.
+    /// Makes a layer that owns its Gaussians. The upload frees parts of them while it copies them, so that they and their copy
+    /// on the device are never in memory completely at the same time.
     pub fn owned(name: impl Into<String>, gaussians: Gaussians) -> Self {
         Self::from_cow(name.into(), Cow::Owned(gaussians))
     }
@@ -99,26 +99,26 @@ impl<'a> Layer<'a> {
         }
     }
 
-    /// The same layer in another state.
+    /// Returns the same layer in another state.
     #[must_use]
     pub fn with(mut self, state: LayerState) -> Self {
         self.state = state;
         self
     }
 
-    /// The same layer with a clip of its own in place of the frame's, which then has no say in it: a clip without surfaces
-    /// keeps the whole layer. It stands in the scene: neither the layer's placement moves it nor
-    /// `Renderer::set_placement`.
+    /// Returns the same layer with a clip of its own. This clip replaces the clip of the frame for this layer; a clip without
+    /// surfaces keeps the whole layer. The clip is in the scene's space: neither the placement of the layer nor
+    /// `Renderer::set_placement` moves it.
     #[must_use]
     pub fn clipped(mut self, clip: Clip) -> Self {
         self.clip = Some(clip);
         self
     }
 
-    /// The same layer as a part of a set of Gaussians, as [`Gaussians::into_parts`] makes them: `numbers` are those that its
-    /// Gaussians have in the set, and `first` is how many Gaussians the scene has before the set. Equal depths are then
-    /// drawn in the order of the set, whichever of its parts they are in: dividing a set changes no picture. Other layers
-    /// number on from the layers before them. The upload refuses a scene in which a number is missing.
+    /// Returns the same layer as a part of a set of Gaussians, as [`Gaussians::into_parts`] makes them. `numbers` are the
+    /// numbers of its Gaussians in the set, and `first` is the number of Gaussians in the scene before the set. Equal depths
+    /// are then drawn in the order of the set, whichever of its parts they are in: dividing a set changes no picture. Other
+    /// layers number on from the layers before them. The upload refuses a scene in which a number is missing.
     #[must_use]
     pub fn numbered(mut self, first: u32, numbers: &'a [u32]) -> Self {
         self.numbers = Some((first, numbers));
@@ -143,24 +143,24 @@ impl<'a> Layer<'a> {
     /// That a frame can show it so.
     ///
     /// # Errors
-    /// As of [`LayerState::check`], and [`Error::Invalid`] for a clip of too many surfaces.
+    /// The errors of [`LayerState::check`], and [`Error::Invalid`] for a clip of too many surfaces.
     #[doc(hidden)]
     pub fn check(&self) -> Result<()> {
         self.state.check(&self.name)?;
         check_clip(&self.name, self.clip.as_ref())
     }
 
-    /// Its own clip; `None` where the frame's holds.
+    /// Returns the layer's own clip, or `None` if it has none and the clip of the frame is used.
     pub fn clip(&self) -> Option<&Clip> {
         self.clip.as_ref()
     }
 
-    /// Its name; several layers may have the same.
+    /// Returns the name of the layer. Several layers may have the same name.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// Its Gaussians.
+    /// Returns the Gaussians of the layer.
     pub fn gaussians(&self) -> &Gaussians {
         &self.gaussians
     }
@@ -177,14 +177,14 @@ impl<'a> Layer<'a> {
         self.state.placement.of_origin(self.gaussians.origin())
     }
 
-    /// The state in which it is uploaded.
+    /// Returns the state in which the layer is uploaded.
     pub fn state(&self) -> LayerState {
         self.state
     }
 }
 
-/// A scene that is to be uploaded: layers that are sorted and blended together, wherever they reach into each other. Where
-/// two Gaussians are equally deep, the earlier layer's is in front, unless the layers are [parts](Layer::numbered) of one set.
+/// A scene to upload: layers that are sorted and blended together, even where they overlap. If two Gaussians are equally deep,
+/// the one of the earlier layer is in front, unless the layers are [parts](Layer::numbered) of one set.
 ///
 /// ```
 /// # use rara_scene as rara;
@@ -210,7 +210,7 @@ impl<'a> Scene<'a> {
         self.layers
     }
 
-    /// Its layers.
+    /// Returns the layers of the scene.
     pub fn layers(&self) -> &[Layer<'a>] {
         &self.layers
     }
@@ -279,12 +279,12 @@ impl<'a> Scene<'a> {
         })
     }
 
-    /// Gaussians of all layers.
+    /// Returns the number of Gaussians of all layers.
     pub fn gaussians(&self) -> usize {
         self.layers.iter().map(|layer| layer.gaussians.len()).sum()
     }
 
-    /// The highest degree of spherical harmonics of any layer.
+    /// Returns the highest degree of spherical harmonics of any layer.
     pub fn sh_degree(&self) -> u32 {
         let degrees = self.layers.iter().map(|layer| layer.gaussians.sh_degree());
         degrees.max().unwrap_or(0)

@@ -9,6 +9,7 @@
 mod annotations;
 #[cfg(feature = "formats")]
 mod assemble;
+mod axis;
 mod bounds;
 pub mod camera;
 #[cfg(feature = "json")]
@@ -26,7 +27,14 @@ mod framing;
 mod gaussians;
 mod generate;
 mod harmonics;
+#[cfg(feature = "formats")]
+mod input;
+#[cfg(feature = "json")]
+#[doc(hidden)]
+pub mod json_kind;
 mod layer;
+#[cfg(all(feature = "formats", feature = "json"))]
+pub mod layers;
 #[cfg(feature = "formats")]
 mod load;
 mod numbers;
@@ -44,7 +52,13 @@ mod property;
 mod report;
 #[cfg(feature = "formats")]
 mod save;
+#[cfg(feature = "formats")]
+mod scene_file;
+mod setting;
 pub mod settings;
+mod text_reader;
+#[cfg(all(feature = "formats", feature = "json"))]
+pub mod trained_folder;
 mod training;
 
 pub use camera::{Camera, Ndc, Projection};
@@ -55,8 +69,10 @@ pub use picture::PngCompression;
 pub use picture::{Aov, Channel, Cue, Cues, Picture};
 pub use placement::Placement;
 pub use precision::{PhiForm, Precision, Preset, ShFormat, TargetFormat};
+pub use setting::{Setting, SettingKind};
 pub use settings::{Decay, ExactForm, Miss, Mode, Raster, Settings, Show};
 
+pub use axis::Axis;
 pub use bounds::{Bounds, extent_along};
 pub use cross_section::cross_section;
 pub use gaussians::{GaussianArrays, Gaussians, sh_coefficients};
@@ -74,12 +90,18 @@ pub use training::{SortBy, Training};
 pub use {
     annotations::Annotations,
     format::Format,
-    load::{SceneFile, load, load_from, load_from_with, load_with},
+    formats::{FileLayer, file_layers, load_layer},
+    input::LoadOptions,
+    load::{load, load_from, load_from_with, load_with},
+    ply::stated_up,
     report::{LoadReport, Remark},
     save::{SaveOptions, save, save_ply, save_with, saved_format},
+    scene_file::SceneFile,
 };
 
 // What examples in the documentation name as users of rara do.
+#[doc(hidden)]
+pub use text_reader::ShapeTree;
 #[doc(hidden)]
 pub use {
     glam,

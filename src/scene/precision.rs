@@ -2,27 +2,25 @@
 
 use half::f16;
 
-use rara_base::limits;
-use rara_base::setters;
+use crate::setting::settings;
+use rara_base::{limits, named};
 
-/// Format of the picture that `Headless` draws into. A host has a format of its own.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
-pub enum TargetFormat {
-    /// 8 bits a channel: each blend rounds, so that thin layers gather error or vanish.
-    #[cfg_attr(feature = "clap", value(name = "8"))]
-    Unorm8,
-    /// 16-bit floats.
-    #[cfg_attr(feature = "clap", value(name = "16f"))]
-    Half,
-    /// 32-bit floats: thousands of thin layers stay exact. A device that cannot blend them gets 16-bit ones, with a warning.
-    #[default]
-    #[cfg_attr(feature = "clap", value(name = "32f"))]
-    Float,
+named! {
+    /// The format of the picture that `Headless` draws into. A host chooses the format of its own target.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+    pub enum TargetFormat {
+        /// 8 bits per channel. Each blend rounds, so many faint splats add up to a visible error, or vanish.
+        Unorm8 = "8",
+        /// 16-bit floats.
+        Half = "16f",
+        /// 32-bit floats. Thousands of faint splats stay exact. A device that cannot blend them gets 16-bit floats, with a warning.
+        #[default]
+        Float = "32f",
+    }
 }
 
 impl TargetFormat {
-    /// The pixels of an image of this format.
+    /// Returns the pixels of an image of this format.
     #[doc(hidden)]
     pub fn decode(self, bytes: &[u8]) -> impl Iterator<Item = [f32; 4]> {
         let channel = move |at: usize| match self {
@@ -44,60 +42,74 @@ impl TargetFormat {
     }
 }
 
-/// How spherical harmonics lie in device memory. Chosen when a scene is loaded.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
-pub enum ShFormat {
-    /// 8 bits a coefficient and one scale a Gaussian; the constant term in 16-bit floats. 56 bytes for degree 3.
-    #[cfg_attr(feature = "clap", value(name = "8"))]
-    Byte,
-    /// The constant term in 16-bit floats; each other coefficient's red, green and blue in 11, 11 and 10 bits of its
-    /// degree's scale, a power of two: off by a 1023rd and a 511th of the degree's largest at most, unless that is
-    /// beyond 65536. 68 bytes for degree 3.
-    Packed,
-    /// 16-bit floats. 96 bytes for degree 3.
-    #[cfg_attr(feature = "clap", value(name = "16f"))]
-    Half,
-    /// 32-bit floats. 192 bytes for degree 3.
-    #[default]
-    #[cfg_attr(feature = "clap", value(name = "32f"))]
-    Float,
+named! {
+    /// The storage of spherical harmonics in device memory. It is chosen when a scene is loaded.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+    pub enum ShFormat {
+        /// 8 bits per coefficient, with one scale per Gaussian. The constant term has 16-bit floats. Degree 3 takes 56 bytes.
+        Byte = "8",
+        /// 11, 11 and 10 bits for the red, green and blue of each coefficient, with one scale per degree, a power of two. The error
+        /// is at most 1/1023 of the largest coefficient of the degree (1/511 for blue), unless that exceeds 65536. The constant term
+        /// has 16-bit floats. Degree 3 takes 68 bytes.
+        Packed = "packed",
+        /// 16-bit floats. Degree 3 takes 96 bytes.
+        Half = "16f",
+        /// 32-bit floats. Degree 3 takes 192 bytes.
+        #[default]
+        Float = "32f",
+    }
 }
 
-/// The normal distribution's Phi in the weight of a cut splat: how it is approximated, and the largest error.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
-pub enum PhiForm {
-    /// A logistic of an odd quintic: 1.9e-5.
-    #[default]
-    Quintic,
-    /// A logistic of an odd cubic: 1.4e-4.
-    Cubic,
-    /// A logistic: 9.5e-3, two levels of 255.
-    Logistic,
+named! {
+    /// The approximation of the normal distribution function Phi in the weight of a cut splat.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+    pub enum PhiForm {
+        /// A logistic function of an odd quintic. The largest error is 1.9e-5.
+        #[default]
+        Quintic = "quintic",
+        /// A logistic function of an odd cubic. The largest error is 1.4e-4.
+        Cubic = "cubic",
+        /// A logistic function. The largest error is 9.5e-3, which is more than two of 255 levels.
+        Logistic = "logistic",
+    }
 }
 
-setters! {
-    /// The precision that a frame gives up for time.
+settings! {
+    /// The precision that a frame gives up for time. The storage of spherical harmonics takes effect when a scene is loaded or
+    /// uploaded (`Headless::load_as`, `SceneBuffers::upload`), not frame by frame.
     #[derive(Debug, Clone, Copy, PartialEq)]
     #[non_exhaustive]
     pub struct Precision {
-        /// Format of the picture.
-        pub target: TargetFormat,
-        /// How spherical harmonics are stored. Takes effect in `Headless::load_as` and
-        /// `SceneBuffers::upload`, not frame by frame.
-        pub sh: ShFormat,
-        /// Phi of the exact mode.
-        pub phi: PhiForm,
-        /// How many bits of the depths the sort compares at most, 8 to 32; each pass takes eight. They count from the nearest
-        /// depth that the scene's bounds allow, so 24 lose nothing unless the farthest is more than four times as far.
-        pub key_bits: u32,
-        /// Exact mode: a cut splat gets the perspective-exact form where sigma_max / Z exceeds this, else the affine one.
-        /// Zero gives all of them the exact form.
-        pub beam_switch: f32,
-        /// Tiles only: a pixel with less transmittance than this is saturated. What lies behind would change it by less
-        /// than this times its colour. Zero blends everything.
-        pub transmittance_min: f32,
+        /// Format of the target's channels: 8 bits, 16-bit floats or 32-bit floats.
+        pub target: TargetFormat as "target-format"(Precision, "FORMAT"),
+        /// How spherical harmonics are stored on the device.
+        ///
+        /// A coefficient is stored as a float of 32 bits (32f) or 16 bits (16f), in 10 or 11 bits with a scale for each degree
+        /// (packed), or in 8 bits with a scale for each Gaussian (8).
+        pub sh: ShFormat as "sh-format"(Precision, "FORMAT"),
+        /// Mode exact: the approximation of the normal distribution function.
+        ///
+        /// The largest errors are 1.9e-5 (quintic), 1.4e-4 (cubic) and 9.5e-3 (logistic).
+        pub phi: PhiForm as "phi"(Precision, "FORM"),
+        /// How many bits of a depth the sort compares at most, 8 to 32.
+        ///
+        /// Each pass of the sort compares 8 bits. The bits are counted from those of the smallest depth that the bounds of the
+        /// scene allow, so 24 bits are exact unless the largest depth is more than four times the smallest.
+        pub key_bits: u32 as "key-bits"(Precision, "N", |n| (8..=32).contains(n), "a number from 8 to 32"),
+        /// Mode exact: the ratio sigma/depth above which a splat's weight is exact in perspective.
+        ///
+        /// sigma is the largest standard deviation of the splat. If the ratio is smaller, the weight is computed as if the rays of
+        /// all pixels were parallel. 0 makes all cut splats exact in perspective.
+        pub beam_switch: f32 as "beam-switch"(
+            Precision, "X", |x| *x >= 0.0 && x.is_finite(), "a finite number, zero or above"
+        ),
+        /// Tiles: the transmittance below which a pixel counts as saturated, from 0 to below 1.
+        ///
+        /// Once a pixel is saturated, the splats behind are not blended. They would change the pixel by less than this
+        /// transmittance times their colour. With 0, all splats are blended.
+        pub transmittance_min: f32 as "transmittance-min"(
+            Precision, "X", |x| (0.0..1.0).contains(x), "a number from zero to below 1"
+        ),
     }
 }
 
@@ -138,21 +150,22 @@ impl Default for Precision {
     }
 }
 
-/// A choice of all six; the guide's chapter on modes has what each costs and gives up.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
-pub enum Preset {
-    /// Nothing is approximated.
-    Exact,
-    /// Only approximations that no picture shows.
-    #[default]
-    Balanced,
-    /// Only approximations that pictures hardly show.
-    Fast,
+named! {
+    /// A choice of all six fields of [`Precision`]. The guide's chapter on modes says what each preset costs and how exact it is.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+    pub enum Preset {
+        /// The smallest errors that rara can reach.
+        Exact = "exact",
+        /// Approximations whose errors cannot be seen in pictures.
+        #[default]
+        Balanced = "balanced",
+        /// Approximations whose errors can hardly be seen in pictures.
+        Fast = "fast",
+    }
 }
 
 impl Preset {
-    /// The precision that the preset stands for.
+    /// Returns the precision that the preset stands for.
     pub const fn precision(self) -> Precision {
         let balanced = Precision {
             target: TargetFormat::Float,

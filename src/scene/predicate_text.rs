@@ -4,11 +4,10 @@ use std::fmt;
 use std::str::FromStr;
 
 use super::predicate::{Attribute, Comparison, Predicate};
-use crate::clip::{Expression, Parser};
-use rara_base::error::{Error, Result, shortened};
-
-/// How deep parentheses may be nested.
-const DEPTH: usize = 48;
+use crate::bounds::Bounds;
+use crate::clip::Expression;
+use crate::text_reader::{ShapeTree, TextReader, joined, number};
+use rara_base::error::{Error, Result};
 
 /// The attributes that every Gaussian has.
 const ATTRIBUTES: [(&str, Attribute); 5] = [
@@ -32,217 +31,151 @@ const SIGNS: [(&str, Comparison); 6] = [
     ("=", Comparison::Equal),
 ];
 
+/// What is wrong with a word that is no name.
+const NO_PREDICATE: &str = "a predicate is missing; give one like opacity>0.5, size<0.01, red>0.6, label in 3,4 or \
+                            inside(sphere:0,0,0,1)";
+
 fn is_of_name(letter: char) -> bool {
     !letter.is_whitespace() && !"()<>=!,".contains(letter)
+}
+
+/// The attribute that a word is, if it is one without `property( )` around it.
+fn attribute(word: &str) -> Option<Attribute> {
+    let begins_number = word.starts_with(|letter: char| letter.is_ascii_digit());
+    let is_name = !word.is_empty() && word.chars().all(is_of_name) && !begins_number;
+    let known = ATTRIBUTES.into_iter().find(|(name, _)| *name == word);
+    match known {
+        Some((_, known)) => Some(known),
+        None => (is_name && !WORDS.contains(&word)).then(|| Attribute::Property(word.into())),
+    }
 }
 
 impl FromStr for Predicate {
     type Err = Error;
 
     fn from_str(text: &str) -> Result<Self> {
-        let mut parser = Parser {
-            text,
-            at: 0,
-            what: "selection",
-        };
-        let predicate = parser.any(0)?;
-        match parser.rest() {
-            "" => Ok(predicate),
-            rest => Err(parser.error(&format!(
-                "'{}' is left over; join predicates by 'and' or 'or'",
-                shortened(rest)
-            ))),
-        }
+        Self::read(text, None).map(|(read, _)| read)
     }
 }
 
-impl<'a> Parser<'a> {
-    /// The name or the number that is next; it may be empty.
-    fn word(&mut self) -> &'a str {
-        let rest = self.rest();
-        let end = rest.find(|letter| !is_of_name(letter));
-        &rest[..end.unwrap_or(rest.len())]
+impl ShapeTree for Predicate {
+    fn read(text: &str, bounds: Option<Bounds>) -> Result<(Self, bool)> {
+        let reader = TextReader::new("selection", text, is_of_name, bounds);
+        reader.all(TextReader::predicate, "join predicates by 'and' or 'or'")
+    }
+}
+
+/// What predicates are together; a single one is itself.
+fn together(mut all: Vec<Predicate>, join: fn(Vec<Predicate>) -> Predicate) -> Predicate {
+    match all.len() {
+        1 => all.remove(0),
+        _ => join(all),
+    }
+}
+
+impl<'a> TextReader<'a> {
+    fn predicate(&mut self) -> Result<Predicate> {
+        let any = self.list("or", |reader| {
+            let all = reader.list("and", Self::one)?;
+            Ok(together(all, Predicate::All))
+        })?;
+        Ok(together(any, Predicate::Any))
     }
 
-    fn takes_word(&mut self, word: &str) -> bool {
-        let takes = self.word() == word;
-        self.at += if takes { word.len() } else { 0 };
-        takes
-    }
-
-    fn any(&mut self, depth: usize) -> Result<Predicate> {
-        let mut any = vec![self.all(depth)?];
-        while self.takes_word("or") {
-            any.push(self.all(depth)?);
-        }
-        Ok(match any.len() {
-            1 => any.remove(0),
-            _ => Predicate::Any(any),
-        })
-    }
-
-    fn all(&mut self, depth: usize) -> Result<Predicate> {
-        let mut all = vec![self.one(depth)?];
-        while self.takes_word("and") {
-            all.push(self.one(depth)?);
-        }
-        Ok(match all.len() {
-            1 => all.remove(0),
-            _ => Predicate::All(all),
-        })
-    }
-
-    fn one(&mut self, depth: usize) -> Result<Predicate> {
-        if depth > DEPTH {
-            return Err(self.error(&format!("it is nested deeper than {DEPTH} levels")));
-        }
-        if self.takes_word("not") {
-            return Ok(Predicate::Not(Box::new(self.one(depth + 1)?)));
-        }
-        if self.takes("(") {
-            let predicate = self.any(depth + 1)?;
-            return match self.takes(")") {
-                true => Ok(predicate),
-                false => Err(self.error("a ) is missing")),
+    fn one(&mut self) -> Result<Predicate> {
+        if self.takes("not") {
+            // Its text has parentheses behind every `not`: they are one level together.
+            let one = match self.rest.starts_with('(') {
+                true => self.one(),
+                false => self.deeper(Self::one),
             };
+            return one.map(|one| Predicate::Not(Box::new(one)));
+        }
+        if self.rest.starts_with('(') {
+            return self.enclosed("", "", |reader| reader.deeper(Self::predicate));
         }
         if self.word() == "inside" {
-            let (at, text) = self.argument("inside", "a shape or an expression of shapes")?;
-            let region = text.parse::<Expression>().map_err(|error| {
-                let column = self.text[..at].chars().count() + 1;
-                Error::Invalid(format!(
-                    "inside(...) from column {column} of the selection on: {error}"
-                ))
-            });
-            return region.map(Predicate::Inside);
+            let what = "a shape or an expression of shapes";
+            let (rest, region) = self.argument("inside", what)?;
+            let (region, has_shares) = Expression::read(region, self.bounds).map_err(|error| {
+                let place = self.place(rest);
+                Error::Invalid(format!("inside(...) from {place} on: {error}"))
+            })?;
+            self.has_shares |= has_shares;
+            return Ok(Predicate::Inside(region));
         }
         let attribute = self.attribute()?;
-        if self.takes_word("in") {
-            return self.ranges().map(|ranges| Predicate::In(attribute, ranges));
+        if self.takes("in") {
+            let ranges = self.list(",", |reader| reader.part(reader.word(), range))?;
+            return Ok(Predicate::In(attribute, ranges));
         }
         let Some(&(_, comparison)) = SIGNS.iter().find(|(sign, _)| self.takes(sign)) else {
-            return Err(self.error(
+            return self.refuse(
                 "a comparison is missing; write one of < <= > >= = != and a number, or in and numbers",
-            ));
+            );
         };
-        let number = self.word();
-        let compared = self.number(number)?;
-        self.at += number.len();
+        let compared = self.part(self.word(), number)?;
         Ok(Predicate::Compare(attribute, comparison, compared))
     }
 
-    /// What stands in the parentheses behind a word, and where.
-    fn argument(&mut self, word: &str, what: &str) -> Result<(usize, &'a str)> {
-        self.at += word.len();
-        if !self.takes("(") {
-            return Err(self.error(&format!("{word} needs {what} in ( )")));
-        }
-        let start = self.at;
-        let mut open = 1;
-        for (at, letter) in self.text[start..].char_indices() {
-            open += match letter {
-                '(' => 1,
-                ')' => -1,
-                _ => 0,
-            };
-            if open == 0 {
-                self.at = start + at + 1;
-                return Ok((start, &self.text[start..start + at]));
-            }
-        }
-        Err(self.error(&format!("the ) of {word}( is missing")))
+    /// The rest of the text behind a word's parenthesis, and the part that stands in it.
+    fn argument(&mut self, word: &str, what: &str) -> Result<(&'a str, &'a str)> {
+        self.enclosed(word, what, |reader| {
+            Ok((reader.rest, reader.before_closing()))
+        })
     }
 
     fn attribute(&mut self) -> Result<Attribute> {
         let word = self.word();
         if word == "property" {
-            let (_, name) = self.argument("property", "a name")?;
+            let (_, name) = self.argument(word, "a name")?;
             return match name.trim() {
-                "" => Err(self.error("property( ) has no name in it")),
+                "" => self.refuse("property( ) has no name in it"),
                 name => Ok(Attribute::Property(name.into())),
             };
         }
-        if word.is_empty()
-            || WORDS.contains(&word)
-            || word.starts_with(|c: char| c.is_ascii_digit())
-        {
-            return Err(self.error(
-                "a predicate is missing; give one like opacity>0.5, size<0.01, red>0.6, label in 3,4 or \
-                 inside(sphere:0,0,0,1)",
-            ));
-        }
-        self.at += word.len();
-        let known = ATTRIBUTES.into_iter().find(|(name, _)| *name == word);
-        Ok(known.map_or_else(
-            || Attribute::Property(word.into()),
-            |(_, attribute)| attribute,
-        ))
+        self.part(word, |word| {
+            attribute(word).ok_or_else(|| Error::Invalid(NO_PREDICATE.into()))
+        })
     }
+}
 
-    fn ranges(&mut self) -> Result<Vec<[f64; 2]>> {
-        let mut ranges = Vec::new();
-        loop {
-            let word = self.word();
-            let (low, high) = word.split_once("..").unwrap_or((word, word));
-            let range = [self.number(low)?, self.number(high)?];
-            if range[0] > range[1] {
-                return Err(self.error(&format!(
-                    "{low}..{high} holds nothing; put the smaller end first"
-                )));
-            }
-            self.at += word.len();
-            ranges.push(range);
-            if !self.takes(",") {
-                return Ok(ranges);
-            }
-        }
-    }
-
-    fn number(&self, text: &str) -> Result<f64> {
-        match text.parse::<f64>() {
-            Ok(number) if number.is_finite() => Ok(number),
-            _ if text.is_empty() => Err(self.error("a number is missing")),
-            _ => Err(self.error(&format!("'{}' is not a finite number", shortened(text)))),
-        }
+/// Both ends of a range, or a number twice.
+fn range(text: &str) -> Result<[f64; 2]> {
+    let (low, high) = text.split_once("..").unwrap_or((text, text));
+    let range = [number(low)?, number(high)?];
+    match range[0] <= range[1] {
+        true => Ok(range),
+        false => Err(Error::Invalid(format!(
+            "{low}..{high} holds nothing; put the smaller end first"
+        ))),
     }
 }
 
 /// The text that it parses from.
 impl fmt::Display for Predicate {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let list = |f: &mut fmt::Formatter<'_>, word: &str, operands: &[Self]| {
-            for (number, operand) in operands.iter().enumerate() {
-                f.write_str(if number > 0 { word } else { "" })?;
-                match operand {
-                    Self::All(_) | Self::Any(_) => write!(f, "({operand})")?,
-                    _ => operand.fmt(f)?,
-                }
-            }
-            Ok(())
+        // `and` goes before `or` without parentheses; with them the text would be deeper than the one that was read.
+        let operand = |one: &Self| match (self, one) {
+            (_, Self::Any(_)) | (Self::All(_), Self::All(_)) => format!("({one})"),
+            _ => one.to_string(),
         };
         match self {
             Self::Inside(region) => write!(f, "inside({region})"),
             Self::Compare(attribute, comparison, number) => {
                 let sign = SIGNS.iter().find(|(_, known)| known == comparison);
-                write!(
-                    f,
-                    "{attribute}{}{number}",
-                    sign.map_or("=", |(sign, _)| sign)
-                )
+                let sign = sign.map_or("=", |(sign, _)| sign);
+                write!(f, "{attribute}{sign}{number}")
             }
             Self::In(attribute, ranges) => {
-                write!(f, "{attribute} in ")?;
-                for (number, [low, high]) in ranges.iter().enumerate() {
-                    f.write_str(if number > 0 { "," } else { "" })?;
-                    match low == high {
-                        true => write!(f, "{low}")?,
-                        false => write!(f, "{low}..{high}")?,
-                    }
-                }
-                Ok(())
+                let ranges = joined(ranges, ",", |[low, high]| match low == high {
+                    true => low.to_string(),
+                    false => format!("{low}..{high}"),
+                });
+                write!(f, "{attribute} in {ranges}")
             }
-            Self::All(all) => list(f, " and ", all),
-            Self::Any(any) => list(f, " or ", any),
+            Self::All(all) => f.write_str(&joined(all, " and ", operand)),
+            Self::Any(any) => f.write_str(&joined(any, " or ", operand)),
             Self::Not(one) => write!(f, "not ({one})"),
         }
     }
@@ -250,79 +183,16 @@ impl fmt::Display for Predicate {
 
 impl fmt::Display for Attribute {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if let Self::Property(name) = self {
-            let is_plain = name.chars().all(is_of_name)
-                && !name.starts_with(|c: char| c.is_ascii_digit())
-                && !WORDS.contains(&name.as_str())
-                && ATTRIBUTES.iter().all(|(known, _)| known != name);
-            return match is_plain {
-                true => f.write_str(name),
-                false => write!(f, "property({name})"),
-            };
+        let known = ATTRIBUTES.iter().find(|(_, attribute)| attribute == self);
+        match self {
+            Self::Property(name) if attribute(name).as_ref() != Some(self) => {
+                write!(f, "property({name})")
+            }
+            Self::Property(name) => f.write_str(name),
+            _ => f.write_str(known.map_or("", |(name, _)| name)),
         }
-        let name = ATTRIBUTES.iter().find(|(_, attribute)| attribute == self);
-        f.write_str(name.map_or("", |(name, _)| name))
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn nonsense_is_refused_with_its_place_and_a_remedy() {
-        for (text, words) in [
-            ("", "column 1 of the selection: a predicate is missing"),
-            ("and opacity>1", "column 1 of the selection: a predicate"),
-            (
-                "opacity",
-                "column 8 of the selection: a comparison is missing",
-            ),
-            ("opacity>", "column 9 of the selection: a number is missing"),
-            ("opacity>half", "'half' is not a finite number"),
-            ("opacity>inf", "'inf' is not a finite number"),
-            (
-                "opacity==1",
-                "column 9 of the selection: a number is missing",
-            ),
-            ("label in", "a number is missing"),
-            ("label in 3,", "a number is missing"),
-            ("label in 3 4", "'4' is left over; join"),
-            ("label in 4..3", "smaller end first"),
-            ("label in 4..", "a number is missing"),
-            ("(opacity>1", "a ) is missing"),
-            ("opacity>1)", "')' is left over"),
-            ("inside sphere:0,0,0,1", "inside needs a shape"),
-            ("inside(sphere:0,0,0,1", "the ) of inside( is missing"),
-            (
-                "red>1 and inside(globe:1)",
-                "from column 18 of the selection on: column 1 of the clip expression",
-            ),
-            ("property()>1", "no name in it"),
-            ("opacity>1 size<2", "'size<2' is left over"),
-            ("3>opacity", "a predicate is missing"),
-            ("ä>1 and", "column 8 of"),
-        ] {
-            let message = text.parse::<Predicate>().unwrap_err().to_string();
-            assert!(message.contains(words), "{text}: {message}");
-        }
-        let deep = format!("{}opacity>1{}", "(".repeat(100), ")".repeat(100));
-        let message = deep.parse::<Predicate>().unwrap_err().to_string();
-        assert!(message.contains("48"), "{message}");
-        let deep = format!("{}opacity>1", "not ".repeat(100_000));
-        assert!(deep.parse::<Predicate>().is_err());
-    }
-
-    #[test]
-    fn text_is_what_it_parses_from() {
-        for text in [
-            "opacity>0.5",
-            "label in 3,4,7..9 and not (size<0.01)",
-            "(red>0.6 or blue<=0.1) and property(red)!=200",
-            "inside(all(box:0,0,0,1,1,1, !sphere:0,0,0,0.5)) or property(in)=1",
-            "property(my label)>=-1",
-        ] {
-            assert_eq!(text.parse::<Predicate>().unwrap().to_string(), text);
-        }
-    }
-}
+mod tests;

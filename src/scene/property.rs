@@ -4,7 +4,7 @@
 #[derive(Debug, Clone, PartialEq, Default)]
 #[non_exhaustive]
 pub struct Property {
-    /// Its name in the file.
+    /// The name of the property in the file.
     pub name: String,
     /// The values; what was dropped of the Gaussians was dropped here.
     pub values: Vec<f64>,

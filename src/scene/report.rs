@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use rara_base::counted::counted;
+
 /// How many elements of each kind are named; the rest is only counted.
 const NAMED: usize = 5;
 
@@ -34,7 +36,7 @@ pub struct LoadReport {
     pub first_repaired: Vec<Remark>,
     /// Bytes that follow the declared data (0 also where a list makes their number unknowable).
     pub trailing_bytes: u64,
-    /// What of the file was left out beside that, a sentence each.
+    /// Sentences that say what else the loader left out, replaced or assumed.
     pub notes: Vec<String>,
 }
 
@@ -59,6 +61,13 @@ impl LoadReport {
     /// Says what was left out.
     pub(crate) fn note(&mut self, note: String) {
         self.notes.push(note);
+    }
+
+    /// Says that `what` was left out, where there is any: its names.
+    pub(crate) fn left_out(&mut self, what: &str, names: &[String]) {
+        if !names.is_empty() {
+            self.note(format!("left out what {what}: {}", names.join(", ")));
+        }
     }
 
     /// Adds the report on another part of the same scene, before which there were `before` elements.
@@ -88,10 +97,7 @@ impl LoadReport {
             if count == 0 {
                 return;
             }
-            let mut line = format!(
-                "{what} {count} Gaussian{}: ",
-                if count == 1 { "" } else { "s" }
-            );
+            let mut line = format!("{what} {}: ", counted(count, "Gaussian"));
             let named: Vec<_> = first
                 .iter()
                 .map(|remark| format!("element {} ({})", remark.element, remark.reason))

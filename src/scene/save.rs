@@ -6,9 +6,11 @@ use std::path::Path;
 
 use glam::DVec3;
 
+use super::assemble::FIXED;
 use super::formats::WRITERS;
-use super::{Annotations, Format, Gaussians, Training};
-use rara_base::error::{Error, Result};
+use super::ply::up_comment;
+use super::{Annotations, Format, Gaussians, Property, Training};
+use rara_base::error::{Error, Result, shortened};
 use rara_base::files::write_atomically;
 use rara_base::setters;
 
@@ -28,11 +30,81 @@ const LOGIT_ONE: f32 = 40.0;
 /// [`Error::Invalid`] names the first number that no reader could draw, such as one that is not finite; [`Error::Io`] if the
 /// file can't be written.
 pub fn save_ply(path: &Path, gaussians: &Gaussians) -> Result<()> {
+    save_ply_with(path, gaussians, &SaveOptions::default())
+}
+
+fn save_ply_with(path: &Path, gaussians: &Gaussians, options: &SaveOptions) -> Result<()> {
     check(path, gaussians)?;
+    let columns: Result<Vec<Column<'_>>> = options
+        .properties
+        .iter()
+        .map(|one| Column::of(path, one, gaussians))
+        .collect();
+    let columns = columns?;
     write_atomically(path, |out| {
-        write_header(out, gaussians)?;
-        (0..gaussians.len()).try_for_each(|index| write_row(out, gaussians, index))
+        write_header(out, gaussians, options.up, &columns)?;
+        (0..gaussians.len()).try_for_each(|index| {
+            write_row(out, gaussians, index)?;
+            columns
+                .iter()
+                .try_for_each(|column| column.write(out, index))
+        })
     })
+}
+
+/// A property that is written.
+struct Column<'a> {
+    property: &'a Property,
+    kind: ColumnKind,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum ColumnKind {
+    Int,
+    Float,
+    Double,
+}
+
+impl<'a> Column<'a> {
+    fn of(path: &Path, property: &'a Property, gaussians: &Gaussians) -> Result<Self> {
+        let wrong = |what: &str| {
+            let name = shortened(&property.name);
+            Error::Invalid(format!("{}: the property `{name}` {what}", path.display()))
+        };
+        let name = property.name.as_str();
+        if name.is_empty() || !name.chars().all(|sign| sign.is_ascii_graphic()) {
+            return Err(wrong(
+                "has a name that is not of letters without blanks; give it another",
+            ));
+        }
+        if is_of_gaussian(name) {
+            return Err(wrong("is what a Gaussian is made of; give it another name"));
+        }
+        if property.values.len() != gaussians.len() {
+            return Err(wrong("has not a value for each Gaussian"));
+        }
+        let is_integer = |value: &f64| *value == f64::from(*value as i32);
+        let kind = match property.single {
+            true => ColumnKind::Float,
+            false if property.values.iter().all(is_integer) => ColumnKind::Int,
+            false => ColumnKind::Double,
+        };
+        Ok(Self { property, kind })
+    }
+
+    fn write(&self, out: &mut dyn Write, index: usize) -> io::Result<()> {
+        let value = self.property.values[index];
+        match self.kind {
+            ColumnKind::Int => out.write_all(&(value as i32).to_le_bytes()),
+            ColumnKind::Float => out.write_all(&(value as f32).to_le_bytes()),
+            ColumnKind::Double => out.write_all(&value.to_le_bytes()),
+        }
+    }
+}
+
+/// True for the properties of a Gaussian in a `.ply`.
+fn is_of_gaussian(name: &str) -> bool {
+    FIXED.contains(&name) || ["nx", "ny", "nz"].contains(&name) || name.starts_with("f_rest_")
 }
 
 /// Writes `gaussians` in the [format](Format::of_name) that the file's name says: `.ply`,
@@ -52,14 +124,19 @@ pub fn save(path: &Path, gaussians: &Gaussians) -> Result<u64> {
 }
 
 setters! {
-    /// What a format leaves open that [`save_with`] writes.
-    #[derive(Debug, Clone, PartialEq, Eq)]
+    /// The options of [`save_with`].
+    #[derive(Debug, Clone, PartialEq)]
     #[non_exhaustive]
     pub struct SaveOptions {
         /// The version of a `.spz` file: 2, which the oldest readers know, 3, or 4, whose attributes are streams of zstd, each by itself.
         pub spz_version: u32,
-        /// What a `.glb` says around its Gaussians; other formats have no room for it.
+        /// The names and `extras` around the Gaussians of a `.glb`; other formats cannot store them.
         pub annotations: Option<Annotations>,
+        /// The direction that is up, which a `.ply` says by a comment where it is an axis; other formats have no room for it.
+        pub up: Option<DVec3>,
+        /// Values of each Gaussian beside those that it is made of, which a `.ply` has as further properties; other formats have no
+        /// room for them. Integers are written as such, what [is](Property::single) of single precision as `float`.
+        pub properties: Vec<Property>,
     }
 }
 
@@ -68,6 +145,8 @@ impl Default for SaveOptions {
         Self {
             spz_version: 3,
             annotations: None,
+            up: None,
+            properties: Vec::new(),
         }
     }
 }
@@ -85,7 +164,7 @@ pub fn save_with(path: &Path, gaussians: &Gaussians, options: &SaveOptions) -> R
         return Ok(clamped);
     }
     debug_assert_eq!(format, Format::Ply);
-    save_ply(path, gaussians).map(|()| 0)
+    save_ply_with(path, gaussians, options).map(|()| 0)
 }
 
 /// The format that [`save`] writes to a file of this name.
@@ -147,12 +226,18 @@ pub(super) fn training_comments(gaussians: &Gaussians) -> String {
     lines
 }
 
-fn write_header(out: &mut dyn Write, gaussians: &Gaussians) -> io::Result<()> {
+fn write_header(
+    out: &mut dyn Write,
+    gaussians: &Gaussians,
+    up: Option<DVec3>,
+    columns: &[Column<'_>],
+) -> io::Result<()> {
     let rest = 3 * (gaussians.sh_coefficients() - 1);
     write!(
         out,
-        "ply\nformat binary_little_endian 1.0\n{}element vertex {}\n",
+        "ply\nformat binary_little_endian 1.0\n{}{}element vertex {}\n",
         training_comments(gaussians),
+        up.and_then(up_comment).unwrap_or_default(),
         gaussians.len()
     )?;
     let fixed = |names: &'static [&'static str]| names.iter().map(|name| name.to_string());
@@ -168,6 +253,14 @@ fn write_header(out: &mut dyn Write, gaussians: &Gaussians) -> io::Result<()> {
     for (at, name) in names.enumerate() {
         let number = if is_far && at < 3 { "double" } else { "float" };
         writeln!(out, "property {number} {name}")?;
+    }
+    for column in columns {
+        let kind = match column.kind {
+            ColumnKind::Int => "int",
+            ColumnKind::Float => "float",
+            ColumnKind::Double => "double",
+        };
+        writeln!(out, "property {kind} {}", column.property.name)?;
     }
     writeln!(out, "end_header")
 }
@@ -215,36 +308,4 @@ fn logit(opacity: f32) -> f32 {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn zeros_and_ones_are_stored_finite_and_come_back() {
-        assert_eq!(f64::from(log(0.0)).exp() as f32, 0.0);
-        let back = |o: f32| (1.0 / (1.0 + (-f64::from(logit(o))).exp())) as f32;
-        assert_eq!((back(0.0), back(1.0), back(0.5)), (0.0, 1.0, 0.5));
-        assert!((back(1.0 - 6e-8) - 1.0).abs() < 1e-6 && back(1e-40) > 0.0);
-    }
-
-    #[test]
-    fn names_say_the_format_that_is_written() {
-        let of = |name: &str| Format::of_name(Path::new(name));
-        assert_eq!(of("a/b.PLY"), Some(Format::Ply));
-        assert_eq!((of("b.splat"), of("ply"), of("")), (None, None, None));
-        assert_eq!(
-            [
-                of("b.compressed.ply"),
-                of("c.glb"),
-                of("c.d.spz"),
-                of("x.sog")
-            ],
-            [
-                Format::CompressedPly,
-                Format::Gltf,
-                Format::Spz,
-                Format::Sog
-            ]
-            .map(Some)
-        );
-    }
-}
+mod tests;

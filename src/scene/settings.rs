@@ -2,107 +2,115 @@
 
 use crate::camera::{Camera, Projection};
 use crate::precision::Precision;
+use crate::setting::settings;
 use crate::training::{SortBy, Training};
-use rara_base::setters;
+use rara_base::error::{Error, Result, shortened};
+use rara_base::named;
 
-/// How a clip treats the Gaussians that it cuts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
-pub enum Mode {
-    /// No clipping.
-    None,
-    /// Keep or drop by the centre.
-    Hard,
-    /// The paper's length ratio along each pixel's ray.
-    Rara,
-    /// The exact visible share of the splat, the low-pass of 3DGS included.
-    #[default]
-    Exact,
+named! {
+    /// How a clip treats the Gaussians that it cuts.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+    pub enum Mode {
+        /// The clip has no effect.
+        None = "none",
+        /// Each splat is kept or dropped as a whole, by its centre.
+        Hard = "hard",
+        /// In each pixel, a cut splat keeps the visible share of the ray's length inside its ellipsoid (the paper).
+        Rara = "rara",
+        /// In each pixel, a cut splat keeps the visible share of its mass along the ray, with the low-pass of 3DGS.
+        #[default]
+        Exact = "exact",
+    }
 }
 
-/// The quantity that the weight w of a cut splat scales.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
-pub enum Decay {
-    /// Alpha: `alpha' = alpha w` (the paper).
-    Linear,
-    /// Optical depth: `alpha' = 1 - (1 - alpha)^w`. Complementary halves rebuild the whole.
-    Depth,
+named! {
+    /// How the weight w of a cut splat changes its alpha.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub enum Decay {
+        /// Scale alpha: `alpha' = alpha w` (the paper).
+        Linear = "linear",
+        /// Scale the optical depth: `alpha' = 1 - (1 - alpha)^w`. The two halves of a cut splat together give the whole splat.
+        Depth = "depth",
+    }
 }
 
-/// [`Mode::Rara`] only: what a cutoff splat keeps in a pixel whose ray misses the traced ellipsoid.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
-pub enum Miss {
-    /// Everything (the paper's text).
-    Keep,
-    /// Nothing (the paper's released code).
-    Drop,
-    /// All or nothing, by the side on which the ray's densest point lies: the limit of the ratio.
-    #[default]
-    Peak,
+named! {
+    /// [`Mode::Rara`] only: what a cutoff splat keeps in a pixel whose ray misses the traced ellipsoid.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+    pub enum Miss {
+        /// The splat keeps everything (the paper's text).
+        Keep = "keep",
+        /// The splat keeps nothing (the paper's released code).
+        Drop = "drop",
+        /// The splat keeps everything if the clip keeps the point of the ray at which the splat is densest, and nothing otherwise.
+        /// This is the limit of the ratio at the edge of the ellipsoid.
+        #[default]
+        Peak = "peak",
+    }
 }
 
-/// How splats become pixels. All give the same picture.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
-pub enum Raster {
-    /// The faster path on the device at hand.
-    #[default]
-    Auto,
-    /// Mesh shaders (VK_EXT_mesh_shader).
-    Mesh,
-    /// Instanced quads.
-    Quad,
-    /// Tiles of pixels, each an ordered list of its splats, in a compute shader; front to back, until a tile is
-    /// saturated.
-    Tiles,
+named! {
+    /// How splats are rasterised. All choices give the same picture.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+    pub enum Raster {
+        /// The path that is faster on this device.
+        #[default]
+        Auto = "auto",
+        /// Quads from mesh shaders (VK_EXT_mesh_shader).
+        Mesh = "mesh",
+        /// Quads by instancing.
+        Quad = "quad",
+        /// A compute shader blends the splats of each tile of pixels, front to back, until the tile is saturated.
+        Tiles = "tiles",
+    }
 }
 
-/// The quantity that a frame shows of its splats.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
-pub enum Show {
-    /// The splats' colours.
-    #[default]
-    Colour,
-    /// The effect of the clip on them: a splat that it leaves whole is blue; one that it cuts goes from red, where the
-    /// pixel keeps nothing, to yellow, where it keeps all. Blended like colours.
-    Weight,
-    /// The number of splats that make the pixel: red, green and blue each, while alpha is as ever. A splat counts of
-    /// which the clip leaves an alpha of 1/255 or more, and that comes before the pixel is saturated. Only tiles count.
-    Count,
-    /// The mean of the splats' colours, each weighted by its alpha, in no order, while alpha is as ever: the colours that lie
-    /// on a plane where the splats are cross-sections, as scene::cross_section makes them. Only tiles make it.
-    Mean,
-    /// The splat that adds most to the pixel's alpha: red and 65536 times green are its Gaussian's number in the scene, blue is
-    /// its layer's, and alpha is what it adds; all are 0 where there is none. Only tiles make it, and only pictures of 32-bit
-    /// floats hold it, without a background. `Picker` reads it.
-    #[cfg_attr(feature = "clap", value(skip))]
-    Strongest,
+named! {
+    /// The quantity that a frame shows.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+    pub enum Show {
+        /// The splats' colours.
+        #[default]
+        Colour = "colour",
+        /// The weight of each splat, as a colour. A splat that the clip leaves whole is blue. A splat that the clip cuts is red where
+        /// the pixel keeps nothing of it and yellow where the pixel keeps all of it. These colours are blended as usual.
+        Weight = "weight",
+        /// The number of splats in the pixel, in red, green and blue alike; alpha is as usual. A splat counts if its alpha after the
+        /// clip is at least 1/255 and the pixel is not yet saturated. This needs tiles.
+        Count = "count",
+        /// The mean of the splats' colours, each weighted by its alpha; alpha is as usual. The order of the splats has no effect. For
+        /// splats that are cross-sections (scene::cross_section), this is the colours on their plane. This needs tiles.
+        Mean = "mean",
+        /// The splat that adds most to the pixel's alpha. The number of its Gaussian in the scene is red plus 65536 times green, blue
+        /// is the number of its layer, and alpha is what the splat adds. All are 0 in an empty pixel. This needs tiles, a picture of
+        /// 32-bit floats, and no background. `Picker` reads it.
+        Strongest,
+    }
 }
 
 impl Show {
-    /// True for what no draw of quads shows.
+    /// Returns true for a quantity that quads cannot show.
     #[doc(hidden)]
     pub fn needs_tiles(self) -> bool {
         matches!(self, Self::Count | Self::Mean | Self::Strongest)
     }
 }
 
-/// Which form of the exact weight a cut splat gets.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub enum ExactForm {
-    /// Affine in the pixel for small splats, perspective-exact for large ones ([`Precision::beam_switch`]).
-    #[default]
-    Auto,
-    /// Perspective-exact for every cut splat: the truth that errors are measured against.
-    Beam,
-    /// Affine for every cut splat.
-    Affine,
+named! {
+    /// The form of the exact weight of a cut splat.
+    #[derive(Debug, Clone, Copy, PartialEq, Default)]
+    pub enum ExactForm {
+        /// Small splats get the affine form, and large ones the form that is exact in perspective ([`Precision::beam_switch`]).
+        #[default]
+        Auto = "auto",
+        /// Every cut splat gets the form that is exact in perspective. Errors are measured against it.
+        Beam = "beam",
+        /// Every cut splat gets the affine form: its weight is computed as if the rays of all its pixels were parallel.
+        Affine = "affine",
+    }
 }
 
-setters! {
+settings! {
     /// The options of a frame: start from the defaults and set what differs.
     ///
     /// ```
@@ -113,29 +121,37 @@ setters! {
     #[derive(Debug, Clone, Copy, PartialEq)]
     #[non_exhaustive]
     pub struct Settings {
-        /// How cut Gaussians are treated.
-        pub mode: Mode,
-        /// The quantity that the weight scales; `None` is the mode's own (linear for `rara`, depth for `exact`).
-        pub decay: Option<Decay>,
-        /// [`Mode::Rara`]: the traced ellipsoid, in standard deviations.
-        pub sigma: f32,
-        /// [`Mode::Rara`]: what a missed pixel keeps.
-        pub miss: Miss,
-        /// Ablation: treat every Gaussian as cutoff.
-        pub trace_all: bool,
-        /// [`Mode::Exact`]: the form of the weight.
-        pub form: ExactForm,
-        /// Opaque background colour; `None` is transparent.
-        pub background: Option<[f32; 3]>,
-        /// Highest spherical-harmonics degree to evaluate; `None` is the scene's own.
-        pub sh_degree: Option<u32>,
-        /// How splats become pixels.
-        pub raster: Raster,
-        /// Colours, or a debug view.
-        pub show: Show,
-        /// The order of the splats; `None` is what all visible layers [ask for](crate::Training::sort_by), or by depth where
-        /// they differ.
-        pub sort_by: Option<SortBy>,
+        /// How Gaussians that the clip cuts are drawn.
+        pub mode: Mode as "mode"(Cut, "MODE"),
+        /// Whether the visible share w of a cut splat scales its alpha or its optical depth.
+        ///
+        /// linear makes alpha w times alpha. depth makes it 1 - (1 - alpha)^w, so that the two halves of a cut splat together give the
+        /// whole splat. The default is linear for mode rara, and depth for mode exact.
+        pub decay: Option<Decay> as "decay"(Cut, "LAW"),
+        /// Mode rara: the traced ellipsoid's radius, in deviations.
+        pub sigma: f32 as "sigma"(Cut, "K", |x| *x > 0.0 && x.is_finite(), "a finite number above zero"),
+        /// Mode rara: what a cut splat keeps in a pixel whose ray misses the ellipsoid.
+        pub miss: Miss as "miss"(Cut, "WHAT"),
+        /// For ablation studies: treat every Gaussian as if the clip cut it.
+        pub trace_all: bool as "trace-all"(Cut, ""),
+        /// Mode exact: the form in which the weight of a cut splat is computed.
+        pub form: ExactForm as "form"(Measure, "FORM"),
+        /// The colour behind the picture, which is otherwise transparent.
+        ///
+        /// The colour is three numbers from 0 to 1, as in 1,0.5,0, or #rrggbb, or a name such as white.
+        pub background: Option<[f32; 3]> as "background"(Look, "COLOUR"),
+        /// The highest degree of spherical harmonics; if not given, the scene's.
+        pub sh_degree: Option<u32> as "sh-degree"(Look, "N", |n| *n <= Some(3), "a number from 0 to 3"),
+        /// How splats are rasterised; all choices draw the same picture.
+        pub raster: Raster as "raster"(Look, "HOW"),
+        /// What pixels show: colours, clip weights, counts or mean colours.
+        pub show: Show as "show"(Look, "WHAT"),
+        /// The order in which splats are blended; if not given, the scene's.
+        ///
+        /// glTF scenes ask for distance, and all others for depth, as in 3DGS, unless their files say otherwise. If the visible layers
+        /// ask for different orders, depth is used.
+        pub sort_by: Option<SortBy> as "sort"(Look, "BY"),
+        ;
         /// How precise the frame is.
         pub precision: Precision,
     }
@@ -161,7 +177,34 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// The order in force, for layers that were trained like this.
+    /// Sets the field of a name, one of [`Settings::ALL`] or [`Precision::ALL`], to the value of a text.
+    ///
+    /// ```
+    /// # use rara_scene as rara;
+    /// let mut settings = rara::Settings::default();
+    /// settings.set("mode", "hard")?;
+    /// settings.set("key-bits", "24")?;
+    /// assert!(settings.set("mode", "soft").is_err());
+    /// # Ok::<(), rara_base::error::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] for a name that no field has, and as [`Setting::read`](crate::Setting::read).
+    pub fn set(&mut self, name: &str, text: &str) -> Result<()> {
+        if let Some(setting) = Self::ALL.iter().find(|setting| setting.name == name) {
+            return setting.read(self, text);
+        }
+        match Precision::ALL.iter().find(|setting| setting.name == name) {
+            Some(setting) => setting.read(&mut self.precision, text),
+            None => Err(Error::Invalid(format!(
+                "there is no setting '{}'; the settings are {}",
+                shortened(name),
+                names().collect::<Vec<_>>().join(", ")
+            ))),
+        }
+    }
+
+    /// Returns the order in force for layers of this training.
     #[doc(hidden)]
     pub fn order_of(&self, camera: &Camera, visible: impl IntoIterator<Item = Training>) -> SortBy {
         let asked = || {
@@ -175,11 +218,17 @@ impl Settings {
         }
     }
 
-    /// The decay law in force: the one asked for, or the mode's own.
+    /// Returns the decay law in force: the chosen one, or the mode's own.
     pub fn decay_law(&self) -> Decay {
         self.decay.unwrap_or(match self.mode {
             Mode::Rara => Decay::Linear,
             Mode::None | Mode::Hard | Mode::Exact => Decay::Depth,
         })
     }
+}
+
+/// The names of all settings.
+fn names() -> impl Iterator<Item = &'static str> {
+    let own = Settings::ALL.iter().map(|setting| setting.name);
+    own.chain(Precision::ALL.iter().map(|setting| setting.name))
 }

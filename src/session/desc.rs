@@ -41,7 +41,8 @@ setters!(HeadlessDesc {
 
 impl HeadlessDesc {
     /// How buffers are reached.
-    pub(super) fn bindings_on(&self, device: &Device) -> Bindings {
+    #[doc(hidden)]
+    pub fn bindings_on(&self, device: &Device) -> Bindings {
         self.bindings.unwrap_or(if self.validation {
             Bindings::Bound
         } else {

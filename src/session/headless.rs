@@ -4,7 +4,7 @@ use super::stored::{PictureBytes, SpareMemory, StoredPicture};
 use super::target::{Target, blendable_on, vulkan_format};
 use super::{HeadlessDesc, Session};
 use crate::passes::{SceneBuffers, SceneLayer, SplatColours};
-use crate::renderer::{Renderer, RendererDesc};
+use crate::renderer::{Kept, Renderer, RendererDesc};
 use crate::stats::FrameStats;
 use crate::trace;
 use rara_base::error::{Error, Result};
@@ -45,11 +45,11 @@ impl Headless {
 
     /// Makes it on the device of a host's renderer, whose compiled pipelines it shares and whose
     /// [placement](Renderer::set_placement) it takes: for what a host wants in its own memory beside its frames, as
-    /// [`channels`](Self::channels). What it draws it submits to the host's queue and waits for; nobody else uses the queue
+    /// [`channels`](Self::channels). [`show`](Self::show) gives it the host's scene. What it draws it submits to the host's queue and waits for; nobody else uses the queue
     /// meanwhile. Of a device that was adopted, the validation layer's messages stay the host's.
     ///
     /// # Errors
-    /// As [`Renderer::new`].
+    /// The errors of [`Renderer::new`].
     pub fn beside(renderer: &Renderer) -> Result<Self> {
         let format = blendable_on(renderer.device(), TargetFormat::default())?;
         Ok(Self {
@@ -119,12 +119,23 @@ impl Headless {
         self.session.load(scene.into(), format)
     }
 
+    /// Draws a scene that is on the device, in place of the one before, and uploads nothing: a clone of the host's, which shares
+    /// its memory, with states and clips of the layers as they are.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] for a scene of another device; the one before is then left.
+    pub fn show(&mut self, scene: SceneBuffers) -> Result<()> {
+        self.session.show(scene)?;
+        self.target.forget();
+        Ok(())
+    }
+
     /// The layers of the scene; none without one.
     pub fn layers(&self) -> &[SceneLayer] {
         self.session.layers()
     }
 
-    /// As [`SceneBuffers::layer_index`], of the scene that is loaded.
+    /// Returns the number of the first layer of a name in the loaded scene: see [`SceneBuffers::layer_index`].
     ///
     /// # Errors
     /// The same, and [`Error::Invalid`] without a scene.
@@ -132,7 +143,7 @@ impl Headless {
         self.session.scene()?.layer_index(name)
     }
 
-    /// As [`SceneBuffers::set_layer_state`], of the scene that is loaded.
+    /// Sets how a layer of the loaded scene is shown: see [`SceneBuffers::set_layer_state`].
     ///
     /// # Errors
     /// The same, and [`Error::Invalid`] without a scene.
@@ -140,7 +151,7 @@ impl Headless {
         self.session.scene_mut()?.set_layer_state(index, state)
     }
 
-    /// As [`SceneBuffers::set_layer_clip`], of the scene that is loaded.
+    /// Sets the clip of a layer of the loaded scene: see [`SceneBuffers::set_layer_clip`].
     ///
     /// # Errors
     /// The same, and [`Error::Invalid`] without a scene.
@@ -155,14 +166,14 @@ impl Headless {
         self.target.forget();
     }
 
-    /// Renders one frame of the scene; the picture stays on the device.
-    pub fn render(
+    /// Renders one frame of the scene, cut by a clip, or of a prepared [cut](crate::Cut) of it; the picture stays on the device.
+    pub fn render<'a>(
         &mut self,
         camera: &Camera,
-        clip: &Clip,
+        kept: impl Into<Kept<'a>>,
         settings: &Settings,
     ) -> Result<FrameStats> {
-        self.render_in(SplatColours::Scene, camera, clip, settings)
+        self.render_in(SplatColours::Scene, camera, kept.into(), settings)
     }
 
     /// The same of splats in other colours.
@@ -170,12 +181,12 @@ impl Headless {
         &mut self,
         colours: SplatColours,
         camera: &Camera,
-        clip: &Clip,
+        kept: Kept<'_>,
         settings: &Settings,
     ) -> Result<FrameStats> {
         let trace = self.session.trace.clone();
         let (session, target) = (&mut self.session, &mut self.target);
-        let draw = || session.draw(target, camera, clip, settings, colours);
+        let draw = || session.draw(target, camera, kept, settings, colours);
         let drawn = trace::span(trace.as_ref(), "render", draw);
         drawn.map_err(|error| self.session.explain(error))
     }
@@ -216,8 +227,4 @@ mod pick;
 mod working;
 
 #[cfg(test)]
-mod faults;
-#[cfg(test)]
 mod tests;
-#[cfg(test)]
-mod tile_pictures;

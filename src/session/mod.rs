@@ -1,5 +1,5 @@
 //! Programs without a loop of their own draw with a session: a device, a renderer and a scene, and the one loop that submits
-//! a frame and reads its outcome. [`Headless`] keeps the picture, [`Windowed`] shows it.
+//! a frame and reads its outcome. [`Headless`] keeps the picture.
 
 use std::time::Instant;
 
@@ -7,7 +7,8 @@ use ash::vk;
 
 use crate::passes::{SceneBuffers, SceneLayer, SplatColours};
 use crate::renderer::{
-    ColorSpace, ConfiguredFrame, FrameRequest, Outcome, Renderer, RendererDesc, Submission,
+    ColorSpace, ConfiguredFrame, FrameRequest, Kept, Outcome, Renderer, RendererDesc, Submission,
+    check_device,
 };
 use crate::stats::FrameStats;
 use crate::trace::{self, Trace};
@@ -15,31 +16,18 @@ use rara_base::error::{Error, Result};
 use rara_gpu::{Device, Drawer, PipelineFile};
 use rara_scene::Scene;
 use rara_scene::camera::Camera;
-use rara_scene::clip::Clip;
 use rara_scene::precision::{ShFormat, TargetFormat};
 use rara_scene::settings::{Settings, Show};
 
 mod desc;
 mod headless;
-#[cfg(feature = "view")]
-mod lines;
-#[cfg(feature = "view")]
-mod panels;
 mod spans;
 mod stored;
 mod target;
-#[cfg(feature = "view")]
-mod windowed;
 
 pub use desc::HeadlessDesc;
 pub use headless::Headless;
-#[cfg(feature = "view")]
-pub use lines::Line;
-#[cfg(feature = "view")]
-pub use panels::Panel;
 pub use stored::StoredPicture;
-#[cfg(feature = "view")]
-pub use windowed::{Redraw, Windowed};
 
 use target::{Target, vulkan_format};
 
@@ -104,6 +92,14 @@ impl Session {
         Ok(())
     }
 
+    /// Takes a scene of the device in place of the one before.
+    fn show(&mut self, scene: SceneBuffers) -> Result<()> {
+        check_device(&scene, &self.device)?;
+        self.renderer.forget();
+        self.scene = Some(scene);
+        Ok(())
+    }
+
     fn layers(&self) -> &[SceneLayer] {
         self.scene.as_ref().map_or(&[], SceneBuffers::layers)
     }
@@ -126,7 +122,7 @@ impl Session {
         &mut self,
         target: &mut Target,
         camera: &Camera,
-        clip: &Clip,
+        kept: Kept<'_>,
         settings: &Settings,
         colours: SplatColours,
     ) -> Result<FrameStats> {
@@ -150,7 +146,7 @@ impl Session {
         let request = FrameRequest {
             scene,
             camera,
-            clip,
+            kept,
             settings,
             submission: Submission::Awaited,
             picture: target.of_tiles_on(settings.background),
@@ -178,9 +174,9 @@ impl Session {
             submit(&self.device, renderer, &request, (target, frame), trace)?;
             let recorded = renderer.newest().expect("it was prepared just now");
             // A first frame finds out how much room the tiles need.
-            match renderer.outcome(recorded) {
+            match renderer.outcome_of(recorded) {
                 Outcome::NeedsRoom => {}
-                Outcome::NoRoom => return Err(no_room(settings)),
+                Outcome::NoRoom => return Err(Outcome::no_room(settings)),
                 Outcome::Drawn | Outcome::Unchanged => {
                     break (tiles, ms_since(begin), recorded.stats());
                 }
@@ -263,15 +259,6 @@ fn loaded<'a>(scene: &'a Option<SceneBuffers>, wanted: &str) -> Result<&'a Scene
     scene
         .as_ref()
         .ok_or_else(|| Error::Invalid(format!("there is no scene to {wanted}; load one first")))
-}
-
-/// The error of a picture that only tiles can make and that there is no room for.
-fn no_room(settings: &Settings) -> Error {
-    Error::Memory(format!(
-        "the tiles' lists are larger than there is room for, and Show::{:?} is made by tiles alone; draw a smaller picture, or \
-         fewer splats",
-        settings.show
-    ))
 }
 
 fn ms_since(begin: Instant) -> f64 {

@@ -144,7 +144,7 @@ impl Target {
         self.held = None;
     }
 
-    #[cfg(any(feature = "view", test))]
+    #[cfg(test)]
     pub(super) fn read_back(&mut self, device: &Device) -> Result<rara_scene::picture::Picture> {
         self.stored(device, |stored| stored.decode())
     }

@@ -5,11 +5,12 @@ use super::*;
 use crate::renderer::RecordedFrame;
 use glam::{DVec3, Vec3};
 use rara_gpu::{PipelineCache, testing};
+use rara_scene::clip::Clip;
 use rara_scene::precision::TargetFormat;
 use rara_scene::settings::Raster;
 use rara_scene::{Bounds, Gaussians, Kind, generate};
 
-/// A session as a window has it, with frames in flight.
+/// A session with frames in flight.
 fn session() -> Session {
     let desc = HeadlessDesc {
         validation: true,
@@ -48,7 +49,7 @@ fn crowded() -> (Gaussians, Camera) {
 fn show(session: &mut Session, camera: &Camera, settings: &Settings) -> Outcome {
     let renderer = &mut session.renderer;
     let (scene, clip) = (session.scene.as_ref().expect("loaded"), Clip::default());
-    let request = FrameRequest::in_flight(scene, camera, &clip, settings);
+    let request = FrameRequest::in_flight(scene, camera, (&clip).into(), settings);
     let frame = renderer.configure_frame(&request).expect("configures");
     let mut target = Target::default();
     let format = settings.precision.target;
@@ -64,7 +65,7 @@ fn show(session: &mut Session, camera: &Camera, settings: &Settings) -> Outcome 
     );
     submitted.expect("submits");
     let frame = renderer.newest().expect("just prepared");
-    renderer.outcome(frame)
+    renderer.outcome_of(frame)
 }
 
 /// The frame that shows how much room is needed is the last one, and not the oldest that is in flight.
@@ -87,7 +88,7 @@ fn a_picture_after_frames_in_flight_has_the_room_it_needs() {
         let drawn = session.draw(
             &mut target,
             &camera,
-            &Clip::default(),
+            (&Clip::default()).into(),
             &settings,
             SplatColours::Scene,
         );
@@ -98,7 +99,7 @@ fn a_picture_after_frames_in_flight_has_the_room_it_needs() {
         let again = session.draw(
             &mut target,
             &camera,
-            &Clip::default(),
+            (&Clip::default()).into(),
             &settings,
             SplatColours::Scene,
         );
@@ -107,7 +108,7 @@ fn a_picture_after_frames_in_flight_has_the_room_it_needs() {
         let drawn = session.draw(
             &mut other,
             &camera,
-            &Clip::default(),
+            (&Clip::default()).into(),
             &settings,
             SplatColours::Scene,
         );

@@ -1,6 +1,7 @@
 //! Nothing leaks: thousands of frames, scenes swapped and clips moved, and memory stays what it was.
 
 use crate::common;
+use crate::common::folder::has_run_alone;
 use rara::scene::{Kind, generate};
 use rara::{Camera, ClipOp, Gaussians, Headless, HeadlessDesc, PipelineCache, Settings};
 
@@ -9,18 +10,23 @@ const STAY: usize = 20;
 
 #[test]
 fn memory_stays_flat_over_a_thousand_frames() {
+    if has_run_alone(memory_stays_flat_over_a_thousand_frames) {
+        return;
+    }
     soak((1_000.0 * common::scale()) as usize);
 }
 
-/// `cargo test --release --test alone -- --ignored --nocapture`.
+/// `cargo test --release --test library -- --ignored --nocapture alone::soak`.
 #[test]
 #[ignore = "half a minute; the thousand say the same"]
 fn memory_stays_flat_over_ten_thousand_frames() {
+    if has_run_alone(memory_stays_flat_over_ten_thousand_frames) {
+        return;
+    }
     soak(10_000);
 }
 
 fn soak(frames: usize) {
-    let _alone = crate::alone();
     // Without the validation layer: it keeps books of its own that grow.
     let mut headless = Headless::new(
         &HeadlessDesc::default()

@@ -7,7 +7,7 @@ use syn::{Attribute, Meta, Token};
 use super::lines::tidy;
 
 /// The features of docs.rs.
-const FEATURES: [&str; 6] = ["bake", "formats", "json", "picture", "serde", "view"];
+const FEATURES: [&str; 6] = ["bake", "formats", "json", "picture", "serde", "viewer"];
 
 pub(super) type List = Punctuated<Meta, Token![,]>;
 

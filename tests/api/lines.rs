@@ -57,6 +57,18 @@ pub(super) fn implemented(block: &syn::ItemImpl) -> Vec<String> {
     lines
 }
 
+/// The methods of a trait; those that it provides have a body.
+pub(super) fn methods(of: &syn::ItemTrait) -> Vec<String> {
+    let line = |item: &syn::TraitItem| match item {
+        syn::TraitItem::Fn(method) => Some(match method.default {
+            Some(_) => format!("{} {{}}", tidy(&method.sig)),
+            None => tidy(&method.sig),
+        }),
+        _ => None,
+    };
+    of.items.iter().filter_map(line).collect()
+}
+
 /// The type and the methods of `setters!`, around a struct or of `Type { field: Value, }`.
 pub(super) fn setters(tokens: &str) -> (String, Vec<String>) {
     let listed = || syn::parse_str(&format!("struct {tokens}"));
@@ -69,6 +81,21 @@ pub(super) fn setters(tokens: &str) -> (String, Vec<String>) {
     };
     let methods = item.fields.iter().map(method).collect();
     (item.ident.to_string(), methods)
+}
+
+/// The struct of `settings!` without its rows, each of which stands behind a field's type as `as "name"(...)`.
+pub(super) fn without_rows(tokens: &str) -> String {
+    let mut parts = tokens.split(" as \"");
+    let mut text = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let mut open = 0;
+        let end = part.find(|letter| {
+            open += i32::from(letter == '(') - i32::from(letter == ')');
+            letter == ')' && open == 0
+        });
+        text += &part[end.expect("a row ends") + 1..];
+    }
+    text.replace(", ; #", ", #")
 }
 
 /// The segments of a type's path.

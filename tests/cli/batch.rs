@@ -111,13 +111,17 @@ fn a_batch_draws_what_its_commands_draw_and_nothing_twice() {
         assert!(&many[name] == bytes, "{name}");
     }
 
-    // Once more, nothing is drawn, and what is gone is drawn again.
+    // Once more, nothing is drawn, and what is gone or cut short is drawn again.
     let again = done(line(&here, "batch @/jobs.json --json"));
     assert_eq!(stdout(&again), "");
     fs::remove_file(here.join("many/cut.png")).expect("removed");
-    refused_by_status(&here, "1 picture is missing", "many/cut.png");
+    let short = &one["other.exr"][..one["other.exr"].len() / 2];
+    fs::write(here.join("many/other.exr"), short).expect("written");
+    refused_by_status(&here, "2 pictures are missing", "many/cut.png");
+    refused_by_status(&here, "2 pictures are missing", "many/other.exr");
     let again = done(line(&here, "batch @/jobs.json --json"));
-    assert_eq!(stdout(&again).lines().count(), 1);
+    assert_eq!(stdout(&again).lines().count(), 2);
+    assert!(pictures(&here.join("many")) == one, "as they were");
     let status = document(line(&here, "batch @/jobs.json --status --json"));
     assert_eq!(
         (&status["pictures"], &status["there"]),

@@ -252,6 +252,12 @@ fn an_eye_or_a_target_by_itself_is_enough_and_a_view_along_up_has_another() {
     assert!(seen(0).abs() < 1e-9 && seen(1).abs() < 1e-9 && (seen(2) - usual[11]).abs() < 0.3);
     let orbit = "render @/scene.ply -o @/o_{}.exr --size 48x32 --repeat 1 --path orbit --frames 2 --eye -1,-2,-4";
     done(line(&here, orbit));
+    let above = "render @/scene.ply -o @/above_{}.png --size 8x8 --repeat 1 --path orbit --frames 2 --eye 0,-3,0 --target 0,0,0";
+    let printed = stderr(&done(line(&here, above)));
+    assert!(
+        printed.contains("looks along what is up; up in the picture is z"),
+        "{printed}"
+    );
     let first = fs::read(here.join("o_0.exr")).expect("a picture");
     assert!(first == drawn(&here, "--size 48x32 --eye -1,-2,-4").0);
 
@@ -273,5 +279,92 @@ fn an_eye_or_a_target_by_itself_is_enough_and_a_view_along_up_has_another() {
             along == fs::read(here.join("along.exr")).expect("a picture"),
             "{eye}"
         );
+    }
+}
+
+/// What the near cut takes is said, with the depth that draws it.
+#[test]
+fn what_is_nearer_than_splats_are_drawn_is_counted() {
+    let here = folder("cameras_near");
+    scene(&here);
+    done(line(
+        &here,
+        "convert @/scene.ply -o @/tiny.ply --place scale:0.01",
+    ));
+    let draw = |scene: &str, words: &str| {
+        let output = done(line(
+            &here,
+            &format!("render @/{scene} -o @/n_{{}}.png --size 32x32 --repeat 1 {words}"),
+        ));
+        stderr(&output)
+    };
+    let remedy = |said: &str| {
+        let depth = said
+            .split("--near-cut ")
+            .nth(1)
+            .expect("a remedy")
+            .split(' ')
+            .next()
+            .expect("a depth");
+        assert!(
+            said.contains(&format!("--near-cut {depth} draws them")),
+            "{said}"
+        );
+        depth.to_owned()
+    };
+    // All of it, which is an empty picture, and some.
+    let tiny = "--eye 0,0,-0.05 --target 0,0,0";
+    let said = draw("tiny.ply", tiny);
+    assert!(
+        said.contains("warning: the picture is empty: the 2 000 Gaussians in view are nearer"),
+        "{said}"
+    );
+    let said = draw("tiny.ply", &format!("{tiny} --near-cut {}", remedy(&said)));
+    assert!(!said.contains("nearer"), "{said}");
+    // A layer that is placed says what its file says. Its own clip stands in the world, in place of the frame's.
+    let half = "plane:1,0,0,-0.002";
+    let nearer = |scene: &str, words: &str| {
+        let said = draw(scene, &format!("{tiny} {words}"));
+        let line = said.lines().find(|line| line.contains("nearer"));
+        line.unwrap_or_else(|| panic!("{words}: {said}")).to_owned()
+    };
+    let placed = "scene.ply --place scale:0.01";
+    assert_eq!(nearer(placed, ""), nearer("tiny.ply", ""));
+    let cut = nearer("tiny.ply", &format!("--clip {half}"));
+    assert!(!cut.contains("2 000"), "{cut}");
+    for words in [
+        format!("--clip {half}"),
+        format!("--layer-clip scene={half}"),
+        format!("--layer-clip scene={half} --clip plane:0,0,1,-1"),
+    ] {
+        assert_eq!(nearer(placed, &words), cut, "{words}");
+    }
+    let said = draw(
+        "scene.ply",
+        "--eye 0,0,-0.3 --target 0,0,0 --path orbit --frames 3",
+    );
+    assert!(
+        said.contains("note: ")
+            && said.contains(" Gaussians of orbit_")
+            && said.contains("would be in view"),
+        "{said}"
+    );
+    let said = draw(
+        "scene.ply",
+        &format!(
+            "--eye 0,0,-0.3 --target 0,0,0 --path orbit --frames 3 --near-cut {}",
+            remedy(&said)
+        ),
+    );
+    assert!(!said.contains("would be in view"), "{said}");
+    // What is cut away, or beside the picture, is not missed, and a scene of usual units has nothing so near.
+    for words in [
+        "--eye 0,0,-0.3 --target 0,0,0 --clip plane:0,0,1,-5",
+        "--eye 0,0,-0.3 --target 0,0,0 --clip-near 0.25",
+        "--eye 0,0,-9 --target 0,0,-10",
+        "--eye 0,0,-4 --target 0,0,0",
+    ] {
+        let said = draw("scene.ply", words);
+        assert!(!said.contains("nearer"), "{words}: {said}");
     }
 }

@@ -6,6 +6,7 @@ use std::path::Path;
 
 use super::paths::frames;
 use super::{document, done, folder, line, line_with, refused, scene, stderr, stdout};
+use crate::folder::until;
 
 /// The pictures of a PNG, of which an animated one has several: 8-bit RGBA each.
 pub(super) fn decoded(file: &Path) -> Vec<Vec<u8>> {
@@ -66,7 +67,8 @@ fn films_have_the_pictures_of_the_sequence() {
         "render @/scene.ply -o @/s.apng --section z=0.2..0.8:4 --size 24x24",
     ));
     assert_eq!(decoded(&here.join("s.apng")).len(), 4);
-    done(line(&here, "render @/scene.ply -o @/one.apng --size 24x24"));
+    let one = done(line(&here, "render @/scene.ply -o @/one.apng --size 24x24"));
+    assert!(stderr(&one).contains("note: this is a film of one picture"));
     assert_eq!(decoded(&here.join("one.apng")).len(), 1);
     assert_eq!(files(&here.join("new")), 1, "nothing else is left");
 }
@@ -253,7 +255,6 @@ fn ffmpeg_gets_opaque_pictures_and_its_failures_are_sentences() {
 #[test]
 fn a_signal_ends_the_encoder_and_removes_the_film() {
     use std::process::{Command, Stdio};
-    use std::time::{Duration, Instant};
     let here = folder("film_signal");
     let scene = scene(&here);
     let path = encoder(&here, "echo $$ > \"$0.pid\"; exec cat > \"$last\"");
@@ -274,14 +275,8 @@ fn a_signal_ends_the_encoder_and_removes_the_film() {
             .flatten()
             .filter(is_part)
     };
-    let begin = Instant::now();
-    while !parts().any(|part| part.metadata().is_ok_and(|about| about.len() > 4096)) {
-        assert!(
-            begin.elapsed() < Duration::from_secs(120),
-            "nothing is written"
-        );
-        std::thread::sleep(Duration::from_millis(1));
-    }
+    let is_begun = |part: fs::DirEntry| part.metadata().is_ok_and(|about| about.len() > 4096);
+    until("a part", || parts().any(is_begun).then_some(()));
     // A shell has what it runs in the background ignore interrupts, and tests may be run so.
     let sent = Command::new("kill")
         .args(["-s", "TERM", &child.id().to_string()])

@@ -125,13 +125,16 @@ fn cameras_of_any_size_make_panoramas() {
 }
 
 /// How far apart two panoramas are of which one is turned by half a picture, so that its seams are where the other has none:
-/// the mean, and that of the worst column, of 255.
-fn seams(here: &Path) -> (f64, f64) {
-    let flags = "--panorama --size 256x128 --eye 0,0,0 --background 0,0,0";
-    for (name, target) in [("a", "0,0,1"), ("b", "1,0,1")] {
+/// the mean, and that of the worst column, of 255. And what is said of the seams of the first.
+fn seams(here: &Path) -> (f64, f64, [f64; 2]) {
+    let flags = "--panorama --size 256x128 --eye 0,0,0 --background 0,0,0 --json";
+    let said = [("a", "0,0,1"), ("b", "1,0,1")].map(|(name, target)| {
         let words = format!("render @/scene.ply -o @/{name}.exr {flags} --target {target}");
-        done(line(here, &words));
-    }
+        let output = done(line(here, &words));
+        assert!(stderr(&output).contains("of 255 where they meet, and by"));
+        let report = document(output);
+        ["mean", "largest"].map(|key| report["seams"][key].as_f64().expect("a number"))
+    });
     let load = |name: &str| Picture::load(here.join(name)).expect("a picture");
     let (a, b) = (load("a.exr"), load("b.exr"));
     let column = |x: u32| {
@@ -143,7 +146,7 @@ fn seams(here: &Path) -> (f64, f64) {
     };
     let all: Vec<f64> = (0..256).map(column).collect();
     let most = all.iter().fold(0.0_f64, |most, one| most.max(*one));
-    (all.iter().sum::<f64>() / 256.0, most)
+    (all.iter().sum::<f64>() / 256.0, most, said[0])
 }
 
 /// Splats are projected by an approximation, the better the smaller they are as they are seen, and ordered by their depths
@@ -167,15 +170,22 @@ fn the_seams_of_a_panorama_are_faint() {
         )
     });
     write(&here.join("scene.ply"), ball);
-    let (mean, most) = seams(&here);
-    println!("around the eye: {mean:.3} of 255, {most:.3} in the worst column");
+    let (mean, most, around) = seams(&here);
+    println!("around the eye: {mean:.3} of 255, {most:.3} in the worst column, {around:?} said");
     assert!(mean > 0.0 && mean < 3.0 && most < 5.0, "{mean}, {most}");
     // In the middle of a cloud splats are as wide as the view, and some reach behind the eye.
     done(line(
         &here,
         "generate general -n 3000 --seed 5 -o @/scene.ply",
     ));
-    let (mean, most) = seams(&here);
-    println!("in the midst of splats: {mean:.3} of 255, {most:.3} in the worst column");
+    let (mean, most, midst) = seams(&here);
+    println!(
+        "in the midst of splats: {mean:.3} of 255, {most:.3} in the worst column, {midst:?} said"
+    );
     assert!(mean < 12.0 && most < 24.0, "{mean}, {most}");
+    // What is said tells the one from the other.
+    assert!(
+        around[0] < midst[0] && around[1] < midst[1] && midst[1] > midst[0],
+        "{around:?} {midst:?}"
+    );
 }

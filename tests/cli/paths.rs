@@ -213,3 +213,71 @@ fn what_does_not_go_together_is_refused_by_name() {
     }
     assert_eq!(files(&here), 2, "nothing was written");
 }
+
+/// A path of nerfstudio's viewer is drawn within its crop box, on that box's background, and at its pace.
+#[test]
+fn a_path_of_nerfstudio_has_its_crop_and_its_pace() {
+    let here = folder("path_crop");
+    scene(&here);
+    let camera = |x: f64| {
+        let pose = [
+            1.0, 0.0, 0.0, x, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, -1.0, -4.0, 0.0, 0.0, 0.0, 1.0,
+        ];
+        serde_json::json!({"camera_to_world": pose, "fov": 50.0, "aspect": 1.5})
+    };
+    let mut path = serde_json::json!({"camera_path": [camera(0.0), camera(0.3)], "render_width": 48, "render_height": 32,
+        "fps": 2, "seconds": 1, "crop": {"crop_center": [0.2, 0.0, 0.0], "crop_scale": [1.0, 2.0, 0.5], "crop_rot": [0.0, 0.0, 0.5],
+        "crop_bg_color": {"r": 51, "g": 102, "b": 255}}});
+    let save =
+        |path: &Value| fs::write(here.join("camera_path.json"), path.to_string()).expect("writes");
+    let draw = |words: &str| {
+        done(line(
+            &here,
+            &format!("render @/scene.ply --cameras @/camera_path.json {words}"),
+        ))
+    };
+    let same = |a: &str, b: &str| {
+        let read = |name: &str| fs::read(here.join(name)).expect("a picture");
+        read(a) == read(b)
+    };
+    let cropped = "box:0.2,0,0,0.5,1,0.25,0.9689124217106447,0,0,0.24740395925452294";
+    let background = "--background 0.2,0.4,1";
+    save(&path);
+    let said = super::stderr(&draw("--view all -o @/a_{}.png"));
+    assert!(
+        said.contains("outside of the crop box of") && said.contains("camera_path.json"),
+        "{said}"
+    );
+    draw(
+        "-o @/planes.png --clip plane:1,0,0,0 --clip plane:0,1,0,0 --clip-op or --background white --save-clip @/saved.json",
+    );
+    for name in ["film.apng", "fast.apng"] {
+        let pace = if name == "fast.apng" { "--fps 12" } else { "" };
+        draw(&format!("--path cameras -o @/{name} {pace}"));
+        let bytes = fs::read(here.join(name)).expect("a film");
+        let control = bytes
+            .windows(4)
+            .position(|four| four == b"fcTL")
+            .expect("a frame");
+        let rate = if pace.is_empty() { 2 } else { 12 };
+        assert_eq!(bytes[control + 24..control + 28], [0, 1, 0, rate]);
+    }
+    path["crop"] = Value::Null;
+    path["fps"] = serde_json::json!(12.5);
+    save(&path);
+    draw(&format!(
+        "--view all -o @/b_{{}}.png --clip {cropped} {background}"
+    ));
+    assert!((0..2).all(|n| same(&format!("a_{n}.png"), &format!("b_{n}.png"))));
+    draw("-o @/again.png --clip-file @/saved.json --background white");
+    assert!(same("planes.png", "again.png"));
+    draw(&format!(
+        "-o @/again.png --clip-expr all({cropped},any(plane:1,0,0,0,plane:0,1,0,0)) --background white"
+    ));
+    assert!(same("planes.png", "again.png"));
+    let said = super::stderr(&draw("--path cameras -o @/film.apng"));
+    assert!(
+        said.contains("the camera path's rate of 12.5 a second is taken for 13"),
+        "{said}"
+    );
+}

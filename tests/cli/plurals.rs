@@ -2,23 +2,7 @@
 
 use std::fs;
 
-use super::{done, folder, line, stderr, stdout};
-
-/// Words in the plural behind a 1.
-fn plurals(text: &str) -> Vec<String> {
-    let words: Vec<&str> = text.split_whitespace().collect();
-    let bare = |word: &str| word.trim_matches(|c: char| !c.is_alphanumeric()).to_owned();
-    let is_plural = |word: &str| {
-        word.ends_with('s') && !["ms", "is", "as", "has", "was", "its"].contains(&word)
-    };
-    let pairs = words
-        .windows(2)
-        .map(|pair| (pair[0].trim_start_matches('('), bare(pair[1])));
-    let found = pairs.filter(|(number, word)| *number == "1" && is_plural(word));
-    found
-        .map(|(number, word)| format!("{number} {word}"))
-        .collect()
-}
+use super::{done, folder, line, plurals, stderr, stdout};
 
 #[test]
 fn one_gaussian_view_or_frame_is_not_called_several() {
@@ -51,9 +35,7 @@ fn one_gaussian_view_or_frame_is_not_called_several() {
         format!("render {drawn} -o @/a_{{}}.png --path orbit --frames 1 --skip-existing"),
         "render @/one.ply -o @/p.png --panorama --eye 0,0,0 --size 16x8".to_owned(),
         format!("sweep {drawn} --clip-normal 0,0,1 --frames 1 -o @/s"),
-        format!("ablate {drawn}"),
         format!("demo {drawn} -o @/out"),
-        format!("bench {drawn} --frames 1 --steps 1 --only exact -o @/bench"),
         format!("bake @/one.ply -o @/b.ply --views 1 --size 16x16 {plane}"),
         "convert @/one.ply -o @/c.spz --min-opacity 1".to_owned(),
         "convert @/one.ply -o @/c.splat.ply --clip plane:0,0,1,-1e9".to_owned(),
@@ -63,13 +45,10 @@ fn one_gaussian_view_or_frame_is_not_called_several() {
         let text = stdout(&output) + &stderr(&output);
         assert_eq!(plurals(&text), Vec::<String>::new(), "{words}:\n{text}");
     }
-    let tables = fs::read_to_string(here.join("bench/bench.md")).expect("tables");
-    assert_eq!(plurals(&tables), Vec::<String>::new(), "{tables}");
     for words in [
         format!("render {drawn} --json --cameras @/cameras.json --view b"),
         format!("render {drawn} --json --clip-file @/clips.json:b"),
         format!("render {drawn} --json --clip plane:1"),
-        "model --most 1".to_owned(),
     ] {
         let output = line(&here, &words);
         assert!(!output.status.success(), "{words}");

@@ -6,9 +6,9 @@ use std::fs;
 use std::os::unix::process::ExitStatusExt;
 use std::path::Path;
 use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
 
 use super::{document, done, folder, line, refused, scene, stderr};
+use crate::folder::until;
 
 fn unfinished(folder: &Path) -> usize {
     let entries = fs::read_dir(folder).expect("a folder");
@@ -29,14 +29,9 @@ fn a_signal_leaves_no_unfinished_file() {
             .stderr(Stdio::piped())
             .spawn()
             .expect("the rara binary runs");
-        let begin = Instant::now();
-        while unfinished(&here) == 0 && !file.exists() {
-            assert!(
-                begin.elapsed() < Duration::from_secs(120),
-                "nothing is written"
-            );
-            std::thread::sleep(Duration::from_millis(1));
-        }
+        until("a file", || {
+            (unfinished(&here) > 0 || file.exists()).then_some(())
+        });
         let pid = started.id().to_string();
         let sent = Command::new("kill").args(["-s", name, &pid]).status();
         assert!(sent.expect("kill runs").success());

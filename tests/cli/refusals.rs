@@ -7,8 +7,7 @@ use super::{done, folder, line, rara, refused, stderr, stdout};
 #[test]
 fn every_command_has_help_with_an_example() {
     let commands = [
-        "render", "sweep", "ablate", "demo", "compare", "convert", "generate", "bake", "info",
-        "devices",
+        "render", "sweep", "demo", "compare", "convert", "generate", "bake", "info", "devices",
     ];
     let overview = stdout(&done(rara(["--help"])));
     for command in commands {
@@ -198,6 +197,16 @@ fn a_wrong_command_line_is_status_2_and_one_line() {
             "render x.ply -o a.png --save-clip a.json",
             "no clip to save",
         ),
+        ("generate general -o a_{}.ply", "leave them out"),
+        ("compare a.png b.png --map {}.png", "leave them out"),
+        (
+            "render x.ply -o a.png --save-camera {:03}.json",
+            "leave them out",
+        ),
+        (
+            "render x.ply -o a.png --clip plane:1,0,0,0 --save-clip {name}.json",
+            "leave them out",
+        ),
         (
             "render x.ply -o a.png --clip box:0,0,0,1,1,-1",
             "above zero",
@@ -218,15 +227,20 @@ fn a_wrong_command_line_is_status_2_and_one_line() {
         ("sweep x.ply --clip-normal 1,0,0 --frames 0", "0"),
         (
             "sweep x.ply --from sphere:0,0,0,1 --to box:0,0,0,1,1,1 --frames 2",
-            "the same shapes",
+            "the same kinds of shapes",
         ),
         (
             "sweep x.ply --from sphere:0,0,0,1 --to !sphere:0,0,0,1 --frames 2",
-            "the same shapes",
+            "the same kinds of shapes",
         ),
         ("generate blob -o a.ply", "general, strands, layers"),
         ("generate general -o a.txt", ".ply"),
         ("compare a.png", "B"),
+        (
+            "bench x.ply",
+            "no command bench here; rara-lab has the commands that measure",
+        ),
+        ("help bench", "rara-lab has the commands that measure"),
         ("render a.ply -o a.png --show count", ".exr"),
         ("sweep a.ply --clip-normal x -o frames --show count", ".exr"),
     ] {

@@ -55,6 +55,28 @@ fn what_is_likely_a_mistake_is_warned_of_unless_nobody_wants_to_know() {
             "the picture is empty: none",
         ),
         (
+            "--clip plane:0,0,1,-1.1 --size 64x64",
+            "warning: the clip leaves hardly anything of what is in view",
+        ),
+        (
+            "--clip plane:0,0,1,-1.1 --size 64x64 --background white",
+            "warning: the clip leaves hardly anything of what is in view",
+        ),
+        ("--hide scene", "warning: all that has Gaussians is hidden"),
+        (
+            "--select all=opacity>0 --hide all",
+            "warning: all that has Gaussians is hidden",
+        ),
+        (
+            "--section z=0.5 --slice --section-thickness 1",
+            "note: --section-thickness changes nothing beside --slice",
+        ),
+        (
+            "--clip plane:1,0,0,0 --layer-clip scene=whole",
+            "note: scene has a clip of its own, which takes the place of the frame's",
+        ),
+        ("@/scene.ply", "note: 2 layers are called 'scene'"),
+        (
             "--cameras @/cameras.json --size 32x32",
             "another aspect than the camera's 48x32",
         ),
@@ -72,6 +94,10 @@ fn what_is_likely_a_mistake_is_warned_of_unless_nobody_wants_to_know() {
     for flags in [
         "",
         "--clip plane:1,0,0,0 --mode hard --size 32x32",
+        "--clip sphere:0,0,0,.5 --size 32x32",
+        "--layer-clip scene=plane:1,0,0,0 --size 32x32",
+        "other=@/scene.ply --place other=scale:-1 --size 32x32",
+        "--section z=0.5 --section-thickness 1 --size 32x32",
         "--cameras @/cameras.json --size 24x16",
     ] {
         let printed = done(line(
@@ -208,7 +234,7 @@ fn json_of_another_kind_is_named_for_what_it_is() {
 
 #[test]
 fn what_the_library_warns_of_is_a_note() {
-    let here = folder("warnings");
+    let here = folder("warnings_in_json");
     scene(&here);
     fs::write(here.join("file"), "no folder").unwrap();
     let unwritable = here.join("file/cache");

@@ -84,6 +84,14 @@ fn nerfstudios_cameras_go_where_its_gaussians_are() {
     assert!(!draw("scene.ply", "a.exr").contains("dataparser"));
     assert!(draw("out/splat.ply", "b.exr").contains("dataparser_transforms.json"));
     assert!(draw("out", "c.exr").contains("dataparser_transforms.json"));
+    // They say what is up where none of them is drawn, and then too it is said how they were placed.
+    fs::copy(here.join("transforms.json"), out.join("transforms.json")).expect("copies");
+    let words = "render @/out/splat.ply --size 8x8 -o @/d.png --repeat 1";
+    let printed = stderr(&done(line(&here, words)));
+    assert!(
+        printed.contains("note: the cameras are placed by"),
+        "{printed}"
+    );
     let apart = document(line(&here, "compare @/a.exr @/b.exr --json"));
     assert!(
         apart["psnr"].as_f64().is_none_or(|psnr| psnr > 50.0),
@@ -102,7 +110,7 @@ fn nerfstudios_cameras_go_where_its_gaussians_are() {
     refused(
         &line(&here, words),
         1,
-        "dataparser_transforms.json: field `transform`",
+        "line 1 column 16, field `transform`",
     );
 }
 
@@ -133,7 +141,7 @@ fn what_was_trained_antialiased_is_drawn_so() {
         ("--antialiasing maybe", "expected on, off or auto"),
         ("--antialiasing hair=on", "no layer is called 'hair'"),
         ("--low-pass much", "expected a number of square pixels"),
-        ("--low-pass 0", "0.01 to 10 can be drawn"),
+        ("--low-pass 0", "it must be from 0.01 to 10"),
         ("--low-pass hair=1", "no layer is called 'hair'"),
     ] {
         refused(&line(&here, &format!("info @/plain.ply {words}")), 2, says);
@@ -305,6 +313,7 @@ fn layers_stand_where_they_are_placed() {
     // In place of what the list says.
     assert!(drawn("@/list.json --place scene=scale:1") == drawn("@/scene.ply"));
     // Scales of the axes, of which negative ones mirror.
+    assert!(drawn("@/scene.ply --place scale:-1") == drawn("@/scene.ply --place scale:-1,-1,-1"));
     let list = json!({"layers": [{"path": "scene.ply", "scale": [-2.0, 1.0, 0.5]}]});
     fs::write(here.join("mirrored.json"), list.to_string()).expect("writes");
     let mirrored = drawn("@/scene.ply --place scale:-2,1,0.5");
@@ -341,10 +350,171 @@ fn layers_stand_where_they_are_placed() {
     for (words, says) in [
         ("--place hair=scale:2", "no layer is called 'hair'"),
         ("--place scene=size:2", "'size:2' is none of move:X,Y,Z"),
-        ("--place scale:0", "scale above zero"),
+        ("--place scale:0", "none of them 0"),
         ("--place scale:1,0,1", "none of them 0"),
         ("--place scale:1e30,1,1e39", "beyond single precision"),
     ] {
         refused(&line(&here, &format!("info @/scene.ply {words}")), 2, says);
     }
+}
+
+/// Cameras of COLMAP stand in the world from which gsplat has made its own.
+#[test]
+fn cameras_of_colmap_are_placed_in_the_world_that_gsplat_trained_in() {
+    let here = folder("trained_gsplat");
+    // Splats in pairs opposite each other, so that their median is the origin in any axes, and whose principal axes are x, y and
+    // z; they look alike from no two sides. The world of COLMAP is four times as large, turned, and moved to where its cameras
+    // look.
+    let turn = glam::DQuat::from_xyzw(0.1, -0.3, 0.2, 0.9).normalize();
+    let shift = glam::DVec3::new(0.4, -0.3, 0.2);
+    let half = [
+        [0.1, -0.1, -0.075],
+        [0.2, 0.05, -0.1],
+        [0.3, 0.2, 0.025],
+        [0.4, -0.15, 0.05],
+    ];
+    let (mut ours, mut theirs, mut points) = (Vec::new(), Vec::new(), String::new());
+    for p in half.map(glam::DVec3::from) {
+        for p in [p, -p] {
+            let q = 4.0 * (turn * p) + shift;
+            ours.push((p, 0.02));
+            theirs.push((q, 0.08));
+            points += &format!("{} {} {} {} 0 0 0 0\n", ours.len(), q.x, q.y, q.z);
+        }
+    }
+    // Two points without splats, whose mean is elsewhere.
+    for (number, far) in [(9, 20.0), (10, -10.0)] {
+        let q = 4.0 * (turn * glam::DVec3::X * far) + shift;
+        points += &format!("{number} {} {} {} 0 0 0 0\n", q.x, q.y, q.z);
+    }
+    let scene = |name: &str, splats: &[(glam::DVec3, f64)]| {
+        let fields = [
+            "x", "y", "z", "scale_0", "scale_1", "scale_2", "rot_0", "rot_1", "rot_2", "rot_3",
+            "opacity", "f_dc_0", "f_dc_1", "f_dc_2",
+        ];
+        let mut text = format!("ply\nformat ascii 1.0\nelement vertex {}\n", splats.len());
+        fields
+            .iter()
+            .for_each(|field| text += &format!("property float {field}\n"));
+        text += "end_header\n";
+        for (number, (p, size)) in splats.iter().enumerate() {
+            let (size, red) = (size.ln(), number as f64 / 4.0 - 1.0);
+            text += &format!(
+                "{} {} {} {size} {size} {size} 1 0 0 0 2 {red} 0 {}\n",
+                p.x, p.y, p.z, -red
+            );
+        }
+        let file = here.join(name);
+        fs::create_dir_all(file.parent().expect("a folder")).expect("folders");
+        fs::write(file, text).expect("writes");
+    };
+    scene("colmap.ply", &theirs);
+    scene("run/ply/point_cloud_6999.ply", &ours);
+    scene("run/ply/point_cloud_999.ply", &ours[..1]);
+    // Four cameras look at the origin, from a distance of 4 in the median.
+    let mut images = String::new();
+    for (number, (away, eye)) in [
+        (3.5, (1.0, -0.5, 3.0)),
+        (4.0, (-2.0, -1.0, 2.0)),
+        (6.0, (3.0, -2.0, 0.5)),
+        (4.0, (0.3, -1.5, -3.0)),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let eye = away * glam::DVec3::from(eye).normalize();
+        let camera =
+            rara::Camera::look_at(eye, glam::DVec3::ZERO, glam::DVec3::NEG_Y, 50.0, (9, 9))
+                .expect("a camera");
+        let (_, q, t) = camera.world_to_camera().to_scale_rotation_translation();
+        images += &format!(
+            "{number} {} {} {} {} {} {} {} 1 {number}\n\n",
+            q.w, q.x, q.y, q.z, t.x, t.y, t.z
+        );
+    }
+    let model = here.join("sparse/0");
+    fs::create_dir_all(&model).expect("folders");
+    let put = |name: &str, text: &str| fs::write(model.join(name), text).expect("writes");
+    put("cameras.txt", "1 PINHOLE 96 96 100 100 48 48\n");
+    put("images.txt", &images);
+    put("points3D.txt", &points);
+    let says = |text: &str| fs::write(here.join("run/cfg.yml"), text).expect("writes");
+    let draw = |scene: &str, name: &str| {
+        line(
+            &here,
+            &format!(
+                "render @/{scene} -o @/{name}_{{}}.png --cameras @/sparse/0 --view all --background black"
+            ),
+        )
+    };
+    done(draw("colmap.ply", "a"));
+    let apart = |name: &str| -> Vec<f64> {
+        let compared = (0..4).map(|n| {
+            document(line(
+                &here,
+                &format!("compare @/a_{n}.png @/{name}_{n}.png --json"),
+            ))
+        });
+        compared
+            .map(|one| one["max"].as_f64().unwrap_or_else(|| panic!("{one}")))
+            .collect()
+    };
+    for settings in [
+        "data_factor: 1\nnormalize_world_space: true\n",
+        "data_factor: 1\n",
+    ] {
+        says(settings);
+        for (scene, name) in [("run", "b"), ("run/ply/point_cloud_6999.ply", "c")] {
+            let said = stderr(&done(draw(scene, name)));
+            assert!(
+                said.contains("the cameras are placed in the world that gsplat made of"),
+                "{said}"
+            );
+            assert!(!said.contains("a guess"), "{said}");
+            assert!(
+                apart(name).iter().all(|&apart| apart <= 1.0),
+                "{:?}",
+                apart(name)
+            );
+        }
+    }
+    says("data_factor: 1\nnormalize_world_space: false\n");
+    let said = stderr(&done(draw("run", "d")));
+    assert!(
+        !said.contains("gsplat made") && apart("d").iter().all(|&apart| apart > 50.0),
+        "{said}"
+    );
+    says("normalize_world_space: true\n");
+    for (file, text, why) in [
+        (
+            "points3D.txt",
+            "# none\n",
+            "it has no points, and gsplat turns its world by",
+        ),
+        (
+            "points3D.txt",
+            "1 0 0 0\n2 1 0 0\n3 2 0 0\n4 3 0 0\n",
+            "no three principal axes",
+        ),
+        (
+            "images.txt",
+            "1 1 0 0 0 0 0 0 1 a\n",
+            "its cameras all stand where they look",
+        ),
+        (
+            "images.txt",
+            "1 0 1 0 0 0 0 4 1 a\n2 0 0 0 1 1 0 4 1 b\n",
+            "up is y in it, where gsplat mirrors the world",
+        ),
+    ] {
+        put(file, text);
+        refused(&draw("run", "e"), 1, why);
+        put("points3D.txt", &points);
+    }
+    fs::remove_file(model.join("points3D.txt")).expect("ours");
+    refused(&draw("run", "e"), 1, "points3D.txt");
+    fs::remove_dir_all(here.join("run/ply")).expect("ours");
+    fs::create_dir_all(here.join("run/ckpts")).expect("a folder");
+    let info = line(&here, "info @/run");
+    refused(&info, 1, "a checkpoint that only gsplat reads");
 }

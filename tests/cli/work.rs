@@ -267,19 +267,6 @@ fn validation_finds_nothing_to_say() {
 }
 
 #[test]
-fn a_plane_at_infinity_changes_nothing_unless_all_is_traced() {
-    let here = folder("ablate");
-    scene(&here);
-    let rows = document(line(&here, "ablate @/scene.ply --size 64x64 --json"));
-    for row in rows.as_array().unwrap() {
-        let what = row["what"].as_str().unwrap();
-        // Only the reading that drops a missing ray takes anything from splats that are not cut.
-        let same = row["l1"].as_f64().unwrap() < 0.01;
-        assert_eq!(same, !what.contains("drop"), "{row}");
-    }
-}
-
-#[test]
 fn the_demo_leaves_five_pictures() {
     let here = folder("demo");
     scene(&here);
@@ -288,66 +275,4 @@ fn the_demo_leaves_five_pictures() {
         assert!(here.join(format!("out/{name}.png")).is_file(), "{name}");
     }
     assert!(printed.stdout.is_empty() && stderr(&printed).contains("exact"));
-}
-
-#[test]
-fn a_bench_measures_every_choice_and_writes_its_tables() {
-    let folder = folder("bench");
-    scene(&folder);
-    let words = "bench @/scene.ply --size 48x40 --frames 1 --steps 1 --shapes -o @/out --json";
-    let report = document(line(&folder, words));
-    let rows = report["rows"].as_array().expect("rows");
-    assert!(rows.len() > 20 && report["refused"].as_array().is_some_and(Vec::is_empty));
-    let of = |name: &str| rows.iter().find(|row| row["name"] == name).expect("a row");
-    assert!(of("exact")["l1"].as_f64() < of("hard")["l1"].as_f64());
-    assert!(rows.iter().any(|row| row["undominated"] == true));
-    for row in rows {
-        let [l1, leak, loss] = ["l1", "leak", "loss"].map(|key| row[key].as_f64().unwrap());
-        assert!((l1 - leak - loss).abs() <= 1e-9 * l1.max(1.0), "{row}");
-    }
-    // Four ways of cutting, at 256 and at the size asked for.
-    assert_eq!(report["paper"].as_array().map(Vec::len), Some(8));
-    let shapes = report["shapes"].as_array().expect("shapes");
-    for shape in shapes {
-        let [l1, by_centres, cut] = ["l1", "hard_l1", "cutoff"].map(|key| shape[key].as_f64());
-        // A shape around everything cuts nothing, and is no worse by centres.
-        assert!(cut == Some(0.0) || l1 < by_centres, "{shape}");
-        assert!(shape["twin_psnr"].as_f64() > Some(60.0), "{shape}");
-    }
-    assert!(shapes.len() > 8 && shapes.last().is_some_and(|shape| shape["cutoff"] == 0));
-    for name in ["bench.md", "bench.csv", "bench.json", "pareto.svg"] {
-        let text = fs::read_to_string(folder.join("out").join(name)).expect(name);
-        assert!(text.contains("preset fast"), "{name}");
-    }
-}
-
-/// The model needs no device; what it predicts for a GPU is the sum of its passes, and there are tables to read.
-#[test]
-fn the_model_of_gpus_is_printed_without_one() {
-    let here = folder("model");
-    let json = document(line(&here, "model --most 1000000 --json -o @/model"));
-    let frames = json["frames"].as_array().expect("frames");
-    assert_eq!(frames.len(), 2, "whole and cut");
-    for frame in frames {
-        let gpus = frame["predicted"].as_array().expect("a list a GPU");
-        assert_eq!(gpus.len(), json["gpus"].as_array().expect("GPUs").len());
-        let passes = gpus[0].as_array().expect("passes");
-        assert!(passes.iter().any(|pass| pass["pass"] == "tiles"));
-        assert!(passes.iter().all(|pass| pass["ms"].as_f64() > Some(0.0)));
-    }
-    for (file, what) in [
-        ("model.md", "predictions, not measurements"),
-        ("model.csv", "\"H200\",1000000,\"true\","),
-    ] {
-        let text = fs::read_to_string(here.join("model").join(file)).expect("it was written");
-        assert!(text.contains(what), "{file}: {text}");
-    }
-    let printed = line(&here, "model --most 1000000").stdout;
-    let text = fs::read_to_string(here.join("model/model.md")).expect("it was written");
-    assert_eq!(
-        String::from_utf8_lossy(&printed).trim_end(),
-        text.trim_end()
-    );
-    let none = line(&here, "model --most 10");
-    assert_eq!(none.status.code(), Some(2));
 }

@@ -1,9 +1,11 @@
-//! A folder of a test's own.
+//! A folder of a test's own, a process of its own, and how tests wait for another process.
 #![allow(dead_code, unreachable_pub, reason = "each test binary uses a part")]
 
 use std::ops::Deref;
 use std::path::{Path, PathBuf};
-use std::{env, fs, process};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+use std::{any, env, fs, process};
 
 /// An empty folder that nothing else writes to, not even a second run of the same test. It is removed with the value,
 /// unless the test fails: then its content shows why.
@@ -35,5 +37,47 @@ impl Drop for Folder {
         if !std::thread::panicking() {
             let _ = fs::remove_dir_all(&self.0);
         }
+    }
+}
+
+/// For a test in whose process nothing else may run: whether it has run in one of its own, so that nothing is left to do here.
+/// nextest gives every test a process; `cargo test` runs those of an executable side by side in one.
+pub fn has_run_alone<T: Fn()>(_: T) -> bool {
+    const CHILD: &str = "RARA_TEST_ALONE";
+    if ["NEXTEST", CHILD]
+        .iter()
+        .any(|set| env::var_os(set).is_some())
+    {
+        return false;
+    }
+    let path = any::type_name::<T>();
+    let (_, test) = path.split_once("::").expect("the test's executable");
+    let output = process::Command::new(env::current_exe().expect("this executable"))
+        .args(["--exact", test, "--include-ignored", "--nocapture"])
+        .env(CHILD, "")
+        .output()
+        .expect("this executable starts");
+    let printed = String::from_utf8_lossy(&output.stdout);
+    eprint!("{}", String::from_utf8_lossy(&output.stderr));
+    assert!(
+        output.status.success() && printed.contains(" 1 passed;"),
+        "{test}: {printed}"
+    );
+    true
+}
+
+/// How long tests wait for another process: so long that only one that hangs takes it. A driver compiles for a minute and more where
+/// other programs run beside it.
+pub const PATIENCE: Duration = Duration::from_secs(600);
+
+/// Waits until something is there, which is asked for again and again.
+pub fn until<T>(what: &str, mut seen: impl FnMut() -> Option<T>) -> T {
+    let begin = Instant::now();
+    loop {
+        if let Some(seen) = seen() {
+            return seen;
+        }
+        assert!(begin.elapsed() < PATIENCE, "{what}: waited in vain");
+        sleep(Duration::from_millis(20));
     }
 }

@@ -6,7 +6,9 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use glam::{DMat4, DQuat, DVec3, DVec4};
 use proptest::prelude::*;
 use rara::Camera;
-use rara::camera_files::{NamedCamera, load_camera, load_cameras};
+use rara::camera_files::{
+    NamedCamera, PathSettings, load_camera, load_cameras, load_path_settings,
+};
 
 use super::colmap::colmap_binary;
 
@@ -156,6 +158,378 @@ fn paths_of_the_viewer() {
         let message = draw_json(&text).unwrap_err().to_string();
         assert!(message.contains(says), "{message}");
     }
+}
+
+/// Settings of SuperSplat's viewer, of either version: the world is turned by half a turn about z.
+#[test]
+fn settings_of_supersplat() {
+    let pose = r#""position": [1, 2, -3], "target": [1, 2, 4], "fov": 90"#;
+    let keys = r#""keyframes": {"times": [0, 9], "values": {"position": [1, 2, -3, 0, 5, 0], "target": [1, 2, 4, 0, 0, 0], "fov": [90]}}"#;
+    let of_one = format!(
+        r#"{{"camera": {{{pose}, "startAnim": "none"}}, "animTracks": [{{"name": "way", {keys}}}, {{{keys}}}]}}"#
+    );
+    let of_two = format!(
+        r#"{{"version": 2, "startMode": "default", "cameras": [{{"initial": {{{pose}}}}}],
+        "annotations": [{{"title": "roof", "camera": {{"initial": {{{pose}}}}}}}, {{}}]}}"#
+    );
+    let names = |text: &str| -> Vec<String> {
+        let cameras = load_json(text).expect("cameras");
+        cameras.iter().map(|one| one.name().to_owned()).collect()
+    };
+    assert_eq!(
+        names(&of_one),
+        ["camera", "way 0", "way 1", "track 1 0", "track 1 1"]
+    );
+    assert_eq!(names(&of_two), ["camera", "roof"]);
+    for camera in [
+        draw_json(&of_one).unwrap()[1],
+        draw_json(&of_two).unwrap()[0],
+    ] {
+        assert!(camera.eye.abs_diff_eq(DVec3::new(-1.0, -2.0, -3.0), 1e-12));
+        assert!(camera.rotation.abs_diff_eq(glam::DMat3::IDENTITY, 1e-12));
+        assert!((camera.fx - 512.0).abs() < 1e-9 && camera.fx == camera.fy);
+    }
+    // The key that looks straight down has an up too, and the fov that the keys of a track lack is the camera's.
+    let down = draw_json(&of_one).unwrap()[2];
+    assert!(down.rotation.row(2).abs_diff_eq(DVec3::Y, 1e-12) && (down.fx - 512.0).abs() < 1e-9);
+    let none = load_json(r#"{"camera": {"fov": 60, "position": null}, "animTracks": []}"#);
+    let message = none.unwrap_err().to_string();
+    assert!(message.contains("no camera stands"), "{message}");
+}
+
+#[test]
+fn projects_of_pix4d() {
+    // Omega, phi and kappa of the camera, from its right, up and back to the world.
+    let axes =
+        camera().rotation.transpose() * glam::DMat3::from_diagonal(DVec3::new(1.0, -1.0, -1.0));
+    let (phi, omega, kappa) = (
+        axes.z_axis.x.asin(),
+        (-axes.z_axis.y).atan2(axes.z_axis.z),
+        (-axes.y_axis.x).atan2(axes.x_axis.x),
+    );
+    let angles = json([omega, phi, kappa].map(f64::to_degrees));
+    let eye = json(camera().eye.to_array());
+    let sensor =
+        |id: u32, internals: &str| format!(r#"{{"id": {id}, "internals": {{{internals}}}}}"#);
+    let pinhole =
+        r#""type": "perspective", "principal_point_px": [500, 300], "focal_length_px": 800"#;
+    let sensors = [
+        sensor(
+            1,
+            &format!(
+                r#"{pinhole}, "radial_distortion": [0, 0, 0], "tangential_distortion": [0, 0]"#
+            ),
+        ),
+        sensor(
+            2,
+            &format!(r#"{pinhole}, "radial_distortion": [0.1, 0, 0]"#),
+        ),
+        sensor(
+            3,
+            r#""type": "fisheye", "principal_point_px": [500, 300], "affine": [800, 0, 0, 800]"#,
+        ),
+        sensor(4, r#""type": "spherical""#),
+    ];
+    let pose = |id: u32| {
+        format!(
+            r#"{{"id": {}, "sensor_id": {id}, "position": {eye}, "orientation_deg": {angles}}}"#,
+            10 + id
+        )
+    };
+    let all: Vec<_> = (1..=5).map(pose).collect();
+    let calibrated = format!(
+        r#"{{"format": "application/opf-calibrated-cameras+json", "version": "1.0", "sensors": [{}], "cameras": [{}]}}"#,
+        sensors.join(", "),
+        all.join(", ")
+    );
+    let folder = Folder::new();
+    let alone = folder.file("in/calibrated.json", &calibrated);
+    let item = |file: &str, format: &str| {
+        format!(r#"{{"uri": "in/{file}.json", "format": "application/opf-{format}+json"}}"#)
+    };
+    let project = folder.file(
+        "project.opf",
+        format!(
+            r#"{{"format": "application/opf-project+json", "items": [{{"type": "calibration", "resources": [{}]}}, {{"resources": [{}, {}]}}]}}"#,
+            item("calibrated", "calibrated-cameras"),
+            item("input", "input-cameras"),
+            item("list", "camera-list")
+        ),
+    );
+    let missing = load_cameras(&project).unwrap_err().to_string();
+    assert!(
+        missing.contains(
+            "project.opf: this project of Pix4D names in/input.json, which is not beside it"
+        ),
+        "{missing}"
+    );
+    folder.file(
+        "in/input.json",
+        r#"{"sensors": [{"id": 1, "image_size_px": [1000, 600]}], "captures": []}"#,
+    );
+    folder.file(
+        "in/list.json",
+        r#"{"cameras": [{"id": 11, "uri": "images/a.jpg"}]}"#,
+    );
+    let of_project = load_cameras(&project).unwrap();
+    assert_eq!(of_project[0].name(), "images/a.jpg");
+    assert_eq!(of_project[1].name(), "12");
+    let of_file = load_cameras(&alone).unwrap();
+    assert!(of_project[0].repairs().is_empty() && of_file[0].repairs()[0].contains("does not say"));
+    for cameras in [&of_project, &of_file] {
+        let lenses: Vec<_> = cameras.iter().map(NamedCamera::distortion).collect();
+        assert_eq!(
+            lenses,
+            [
+                None,
+                Some("perspective"),
+                Some("fisheye"),
+                Some("spherical"),
+                None
+            ]
+        );
+        for one in &cameras[..3] {
+            assert_same(&one.undistorted().unwrap(), &camera().fy(800.0));
+        }
+        for (number, says) in [
+            (3, "spherical sensor, which has no pinhole"),
+            (4, "no sensor that the file lists"),
+        ] {
+            let message = cameras[number].undistorted().unwrap_err().to_string();
+            assert!(message.contains(says), "{message}");
+        }
+    }
+}
+
+/// Cameras of glTF stand where the nodes of the scene put them, whatever these scale, in the coordinates of its Gaussians.
+#[test]
+fn cameras_of_gltf() {
+    // The camera's axes and eye before Gaussians are turned by half a turn about z, as glTF's camera has them: -z is forward.
+    let turn = glam::DMat3::from_diagonal(DVec3::new(-1.0, -1.0, 1.0));
+    let axes = turn
+        * camera().rotation.transpose()
+        * glam::DMat3::from_diagonal(DVec3::new(1.0, -1.0, -1.0));
+    let eye = turn * camera().eye;
+    let (outer, shift) = (DQuat::from_rotation_x(0.4), DVec3::new(1.0, 2.0, -3.0));
+    let q = (outer.inverse() * DQuat::from_mat3(&axes)).to_array();
+    let inner = outer.inverse() * (eye - shift) / 2.0;
+    let columns = DMat4::from_mat3_translation(5.0 * axes, eye).to_cols_array();
+    let angle = 2.0 * (512.0_f64 / 700.0).atan();
+    let text = format!(
+        r#"{{"asset": {{"version": "2.0"}}, "scene": 1, "scenes": [{{}}, {{"nodes": [0, 3]}}], "nodes": [
+        {{"children": [1, 2], "translation": {}, "rotation": {}, "scale": [2, 2, 2]}},
+        {{"camera": 0, "name": "shot", "translation": {}, "rotation": {}}},
+        {{"camera": 1}},
+        {{"camera": 1, "matrix": {}}},
+        {{"camera": 0, "name": "not in the scene"}}],
+        "cameras": [{{"type": "perspective", "name": "lens", "perspective": {{"yfov": {angle}, "znear": 0.1, "aspectRatio": 1.5}}}},
+        {{"type": "orthographic", "name": "flat", "orthographic": {{"xmag": 4, "ymag": 2, "znear": 0, "zfar": 9}}}}]}}"#,
+        json(shift.to_array()),
+        json(outer.to_array()),
+        json(inner.to_array()),
+        json(q),
+        json(columns),
+    );
+    let folder = Folder::new();
+    let glb = |text: &str| {
+        let mut bytes = b"glTF".to_vec();
+        bytes.extend([2, 0, text.len() as u32].map(u32::to_le_bytes).concat());
+        bytes[8..12].copy_from_slice(&(20 + text.len() as u32).to_le_bytes());
+        bytes.splice(12..16, (text.len() as u32).to_le_bytes());
+        bytes.extend(b"JSON");
+        bytes.extend(text.as_bytes());
+        bytes
+    };
+    let binary = glb(&text);
+    for path in [folder.file("a.gltf", &text), folder.file("a.glb", &binary)] {
+        let cameras = load_cameras(&path).unwrap();
+        let names: Vec<_> = cameras.iter().map(NamedCamera::name).collect();
+        assert_eq!(names, ["shot", "flat", "flat"]);
+        let shot = cameras[0].camera().unwrap();
+        assert_eq!((shot.width, shot.height), (1536, 1024));
+        let expected = camera().width(1536).height(1024).cx(768.0).cy(512.0);
+        assert_same(&shot, &expected.fx(700.0).fy(700.0));
+        let flat = cameras[2].camera().unwrap();
+        assert_eq!((flat.width, flat.fx), (2048, 256.0));
+        assert_eq!(flat.projection, rara::Projection::Orthographic);
+        assert!(
+            flat.eye.abs_diff_eq(camera().eye, 1e-9)
+                && flat.rotation.abs_diff_eq(camera().rotation, 1e-9)
+        );
+    }
+    assert_eq!(
+        rara::camera_files::cameras_from_json(&binary, Path::new("a"))
+            .unwrap()
+            .len(),
+        3
+    );
+    for cut in 4..binary.len() {
+        assert!(load_cameras(&folder.file("cut.glb", &binary[..cut])).is_err());
+        assert!(rara::camera_files::cameras_from_json(&binary[..cut], Path::new("a")).is_err());
+    }
+    for (from, to, says) in [
+        (
+            r#""nodes": [0, 3]"#,
+            r#""nodes": []"#,
+            "no cameras in its scene",
+        ),
+        (
+            r#""children": [1, 2]"#,
+            r#""children": [0]"#,
+            "its own child",
+        ),
+        (
+            r#""children": [1, 2]"#,
+            r#""children": [9]"#,
+            "node 9 of the glTF is not there",
+        ),
+        (
+            r#""camera": 1}}"#.trim_end_matches('}'),
+            r#""camera": 7"#,
+            "`1` of node 2 is not in the glTF",
+        ),
+        (
+            r#""orthographic": "#,
+            r#""other": "#,
+            "neither perspective nor orthographic",
+        ),
+        (r#""yfov": "#, r#""yfov": -"#, "`shot`"),
+    ] {
+        let wrong = text.replacen(from, to, 1);
+        let message = draw_json(&wrong).unwrap_err().to_string();
+        assert!(message.contains(says), "{says}: {message}");
+    }
+}
+
+/// What other programs write is named, with what to do.
+#[test]
+fn cameras_of_others_are_named() {
+    for (text, says) in [
+        (
+            r#"[{"cameras": {}, "shots": {}}]"#,
+            "a reconstruction of OpenSfM",
+        ),
+        (
+            r#"{"shots": {}, "cameras": {}}"#,
+            "a reconstruction of OpenSfM",
+        ),
+        (
+            r#"{"sfm_data_version": "0.3", "views": [], "intrinsics": []}"#,
+            "a scene of OpenMVG",
+        ),
+        (
+            r#"{"version": ["1"], "views": [], "intrinsics": [], "poses": []}"#,
+            "Meshroom",
+        ),
+        (r#"{"fx": 1, "t_00": 1, "t_23": 0}"#, "a camera of Polycam"),
+        (r#"{"K": [], "poses": [], "w": 1, "h": 1}"#, "Record3D"),
+        (r#"{"cameraPoseARFrame": [], "intrinsics": []}"#, "ARKit"),
+        (
+            r#"{"format": "application/opf-input-cameras+json", "version": "1.0"}"#,
+            "give the .opf",
+        ),
+        (
+            r#"{"format": "application/opf-project+json", "items": []}"#,
+            "without calibrated cameras",
+        ),
+        (
+            r#"{"type": "FeatureCollection", "features": []}"#,
+            "GeoJSON",
+        ),
+        (
+            r#"{"asset": {}, "geometricError": 1, "root": {}}"#,
+            "a tileset of 3D Tiles",
+        ),
+        ("# Bundle file v0.3\n1 0\n", "Bundler"),
+        ("NVM_V3 \n\n1\n", "VisualSFM"),
+        ("<?xml version=\"1.0\"?>", "Metashape"),
+        (
+            "BLENDER-v300",
+            "a file of Blender, which is not read as cameras; export its cameras as glTF",
+        ),
+        ("#usda 1.0\n", "a file of USD"),
+        ("PK\u{3}\u{4}", "a ZIP archive"),
+        (
+            "# timestamp tx ty tz qx qy qz qw\n1.5 0 0 0 0 0 0 1\n",
+            "a trajectory as those of TUM",
+        ),
+        (
+            "1 0 0 0 0 1 0 0 0 0 1 0\n",
+            "a trajectory as those of KITTI",
+        ),
+        ("0, 1, 2, 3\n", "a list of poses or numbers"),
+        ("", "no file of cameras that is read"),
+        ("words", "no file of cameras that is read"),
+        ("{}", "no file of cameras that is read"),
+        (r#"{"width": 8}"#, "no file of cameras that is read"),
+        (r#"[{"a": 1}]"#, "no file of cameras that is read"),
+        ("[1, 2]", "no file of cameras that is read"),
+        ("{", "line 1 column 1"),
+        (
+            r#"{"width": 8, "height": 8, "fx": 8, "fy": 8}"#,
+            "missing field `world_to_camera`",
+        ),
+    ] {
+        let message = load_json(text).expect_err(text).to_string();
+        assert!(message.contains(says), "{text}: {message}");
+    }
+}
+
+/// What a path says of its film.
+#[test]
+fn a_path_says_its_crop_its_background_and_its_rate() {
+    let folder = Folder::new();
+    let settings = |more: &str| {
+        let text = format!(
+            r#"{{"camera_path": [{{"camera_to_world": [], "fov": 1}}, {{"camera_to_world": [], "fov": 1}}], "render_width": 1, "render_height": 1{more}}}"#
+        );
+        load_path_settings(&folder.file("camera_path.json", text))
+    };
+    let none = settings(r#", "crop": null"#).expect("a path");
+    assert_eq!(none, PathSettings::default());
+    assert_eq!(
+        settings(r#", "seconds": 4"#).expect("a path").fps,
+        Some(0.5)
+    );
+    assert_eq!(settings(r#", "seconds": 0"#).expect("a path").fps, None);
+    let turned = settings(
+        r#", "fps": 24, "seconds": 9, "crop": {"crop_center": [1, 2, 3], "crop_scale": [2, 4, 6],
+        "crop_rot": [0.3, -0.2, 0.5], "crop_bg_color": {"r": 51, "g": 0, "b": 300}}"#,
+    )
+    .expect("a path");
+    assert_eq!(
+        (turned.fps, turned.background),
+        (Some(24.0), Some([0.2, 0.0, 1.0]))
+    );
+    let crop = turned.crop.expect("a box").clip();
+    // Roll, pitch and yaw: turns about x, then y, then z.
+    let turn =
+        DQuat::from_rotation_z(0.5) * DQuat::from_rotation_y(-0.2) * DQuat::from_rotation_x(0.3);
+    for (corner, keeps) in [(0.99, true), (1.01, false)] {
+        for signs in [DVec3::ONE, DVec3::new(-1.0, 1.0, -1.0), DVec3::NEG_ONE] {
+            let inside = turn * (corner * signs * DVec3::new(1.0, 2.0, 3.0));
+            assert_eq!(crop.keeps(DVec3::new(1.0, 2.0, 3.0) + inside), keeps);
+        }
+    }
+    let older =
+        settings(r#", "crop": {"crop_min": [1, 1, 1], "crop_max": [3, 3, 3]}"#).expect("a path");
+    let older = older.crop.expect("a box").clip();
+    let kept = [0.9, 1.1, 2.9, 3.1].map(|all| older.keeps(DVec3::splat(all)));
+    assert_eq!(kept, [false, true, true, false]);
+    for (crop, says) in [
+        ("{}", "no crop_center"),
+        (
+            r#"{"crop_center": [0, 0, 0], "crop_scale": [1, 0, 1]}"#,
+            "its crop is no box",
+        ),
+    ] {
+        let message = settings(&format!(r#", "crop": {crop}"#))
+            .unwrap_err()
+            .to_string();
+        assert!(message.contains(says), "{message}");
+    }
+    let other = load_path_settings(&folder.file("cameras.json", single()));
+    assert_eq!(other.expect("no path"), PathSettings::default());
 }
 
 fn single() -> String {
@@ -386,9 +760,9 @@ fn unusable_files_are_refused_with_a_sentence() {
     let frame = format!(r#""frames": [{{"transform_matrix": {matrix}}}]"#);
     let inria = inria_entry("a");
     for (text, words) in [
-        ("".into(), "neither"),
+        ("".into(), "no file of cameras"),
         ("[]".into(), "no camera"),
-        ("{}".into(), "frames"),
+        ("{}".into(), "no file of cameras"),
         ("[1, 2".into(), "line 1"),
         (format!("[{}]", inria.replace("1000", "0")), "width 0"),
         (format!("[{}]", inria.replace("1000", "0.5")), "width 0.5"),

@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
+use glam::DVec3;
 use rara::Camera;
-use rara::camera_files::{NamedCamera, load_cameras};
+use rara::camera_files::{NamedCamera, load_cameras, load_colmap_points};
 
 use super::cameras::{Folder, assert_same, camera};
 
@@ -70,6 +71,88 @@ fn colmap_folders_binary_and_text() {
         assert_same(&cameras[0].camera().unwrap(), &camera());
         assert_eq!(cameras[1].camera().unwrap().fy, 800.0);
     }
+}
+
+/// A picture's line of points may be empty or missing, and what is no line of either is refused.
+#[test]
+fn text_with_and_without_lines_of_points_has_all_pictures() {
+    let folder = Folder::new();
+    folder.file("cameras.txt", "1 PINHOLE 9 7 8 8 4 3\n");
+    let pose = "1 0 0 0 0 0 1 1";
+    let names = |text: &str| -> rara::Result<Vec<String>> {
+        folder.file("images.txt", text);
+        let cameras = load_cameras(&folder.0)?;
+        Ok(cameras.iter().map(|one| one.name().to_owned()).collect())
+    };
+    for between in [
+        "",
+        "\n",
+        "\n# c\n",
+        "\r\n",
+        "1 2 -1\n",
+        "1 2 -1 3.5 4e0 7\n\n",
+    ] {
+        // Names may be numbers, or several words.
+        let text: Vec<_> = ["a.jpg", "b 2 3.jpg", "4", "d"]
+            .iter()
+            .enumerate()
+            .map(|(id, name)| format!("{id} {pose} {name}\n{between}"))
+            .collect();
+        let found = names(&text.concat()).expect("pictures");
+        assert_eq!(found, ["4", "a.jpg", "b 2 3.jpg", "d"], "{between:?}");
+    }
+    for (points, line) in [
+        ("1 2\n", 2),
+        ("1 2 -1\n3 4 -1\n", 3),
+        ("1 2 x\n", 2),
+        ("x\n", 2),
+    ] {
+        let error = names(&format!("1 {pose} a\n{points}2 {pose} b\n"))
+            .expect_err(points)
+            .to_string();
+        assert!(
+            error.contains(&format!("line {line}: this is neither")),
+            "{error}"
+        );
+    }
+}
+
+#[test]
+fn points_of_either_encoding() {
+    let points = [DVec3::new(1.5, -2.0, 3.0), DVec3::new(-0.25, 0.0, 1e3)];
+    let (text, binary) = (Folder::new(), Folder::new());
+    let mut lines = String::from("# c\n");
+    let mut bytes = 2_u64.to_le_bytes().to_vec();
+    for (id, p) in points.iter().enumerate() {
+        lines += &format!("{id} {} {} {} 1 2 3 0.5 1 0 2 7\n", p.x, p.y, p.z);
+        bytes.extend((id as u64).to_le_bytes());
+        p.to_array()
+            .iter()
+            .for_each(|v| bytes.extend(v.to_le_bytes()));
+        bytes.extend([9; 11]);
+        bytes.extend(2_u64.to_le_bytes());
+        bytes.extend([7; 16]);
+    }
+    text.file("cameras.txt", "");
+    text.file("points3D.txt", lines);
+    binary.file("sparse/0/cameras.bin", "");
+    let at = binary.file("sparse/0/points3D.bin", &bytes);
+    for folder in [&text.0, &binary.0, &at] {
+        let read = load_colmap_points(folder).expect("points");
+        assert_eq!(read.as_deref(), Some(&points[..]));
+    }
+    assert_eq!(
+        load_colmap_points(&text.file("cameras.json", "")).expect("others"),
+        None
+    );
+    for end in 0..bytes.len() {
+        std::fs::write(&at, &bytes[..end]).unwrap();
+        let error = load_colmap_points(&at).unwrap_err().to_string();
+        assert!(error.contains("cut off"), "{error}");
+    }
+    text.file("points3D.txt", "1 2 3\n");
+    let error = load_colmap_points(&text.0).unwrap_err().to_string();
+    assert!(error.contains("line 1: this is not `POINT3D_ID"), "{error}");
 }
 
 /// All of the cameras, as they are drawn.

@@ -7,8 +7,8 @@ use rara::glam::Vec3;
 use rara::scene::{Kind, SceneFile, generate, load, load_from, load_from_with, save};
 use rara::{SortBy, Training};
 
-use crate::folder::Folder;
-use crate::ply::made::{FIXED, Format, floats, scene_file};
+use crate::common::folder::Folder;
+use crate::files::ply::made::{FIXED, Format, floats, scene_file};
 
 fn loaded(bytes: Vec<u8>) -> SceneFile {
     let name = Path::new("made up");

@@ -17,8 +17,6 @@ pub enum Rule {
     /// As [`Ceiling`](Self::Ceiling), of compilers, whose versions differ: where the file is renewed, registers and code get
     /// a tenth more than was found.
     CompilersCeiling,
-    /// Debts, which are written down as they are and with a sentence, so that none is paid or made unseen.
-    Debt,
 }
 
 impl Rule {
@@ -34,23 +32,13 @@ const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/gpu_cost/budget.t
 
 const HEADER: &str = "\
 # What frames may cost a GPU; the guide's chapter on testing says how to read it. A change that costs more changes it:
-#     RARA_RENEW_BUDGET=1 cargo test --release --test gpu_cost
+#     RARA_RENEW_BUDGET=1 cargo test --release --test library gpu_cost
 ";
 
 /// What stands before a table.
 fn explained(table: &str) -> &'static str {
     match table {
         "frames" => "\n# The commands of a frame with the pipelines for GPUs.\n",
-        "bytes" => {
-            "\n\
-# Bytes of device memory that each pass reads and writes for a thousand of five million Gaussians at 1920x1080, by the\n\
-# costs of the model of GPUs.\n"
-        }
-        "passes" => {
-            "\n\
-# Debts: passes with fewer than 16384 invocations, or with more than 64 loads of which each waits for the one before, at five\n\
-# million Gaussians. They are as src/lab/measure/gpu_model/costs.rs says, and can only get better.\n"
-        }
         _ => {
             "\n\
 # Ceilings of each shader and its specialisation constants, those that are 0 left out: vector registers, spilled registers,\n\
@@ -60,14 +48,8 @@ fn explained(table: &str) -> &'static str {
     }
 }
 
-/// A line of the file.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
-struct Entry {
-    numbers: Vec<(String, u64)>,
-    /// Why a debt is one; empty in other tables.
-    debt: String,
-}
-
+/// The numbers of a line of the file.
+type Entry = Vec<(String, u64)>;
 type Budget = BTreeMap<String, BTreeMap<String, Entry>>;
 
 /// The tests of one process take turns, since each writes a part of the file.
@@ -85,8 +67,7 @@ pub fn check(found: BTreeMap<String, Table>, rule: Rule) {
     let mut budget = parse(&fs::read_to_string(FILE).expect("the budget"));
     if env::var_os("RARA_RENEW_BUDGET").is_some() {
         for (name, table) in &found {
-            let before = budget.remove(name).unwrap_or_default();
-            budget.insert(name.clone(), renewed(&before, table, rule));
+            budget.insert(name.clone(), renewed(table, rule));
         }
         fs::write(FILE, text(&budget)).expect("tests/ is writable");
     }
@@ -95,23 +76,18 @@ pub fn check(found: BTreeMap<String, Table>, rule: Rule) {
         .iter()
         .flat_map(|(name, table)| {
             let allowed = budget.get(name).unwrap_or(&empty);
-            differences(name, table, allowed, rule)
+            differences(name, table, allowed)
         })
         .collect();
     assert!(
         differences.is_empty(),
         "this is not what tests/gpu_cost/budget.toml allows:\n{}\nif that is meant, \
-         RARA_RENEW_BUDGET=1 cargo test --release --test gpu_cost writes it down",
+         RARA_RENEW_BUDGET=1 cargo test --release --test library gpu_cost writes it down",
         differences.join("\n")
     );
 }
 
-fn differences(
-    name: &str,
-    table: &Table,
-    allowed: &BTreeMap<String, Entry>,
-    rule: Rule,
-) -> Vec<String> {
+fn differences(name: &str, table: &Table, allowed: &BTreeMap<String, Entry>) -> Vec<String> {
     let mut all = Vec::new();
     for (item, numbers) in table {
         let Some(entry) = allowed.get(item) else {
@@ -123,12 +99,11 @@ fn differences(
             continue;
         };
         for (number, value) in numbers {
-            let ceiling = entry.numbers.iter().find(|(n, _)| n == number);
+            let ceiling = entry.iter().find(|(n, _)| n == number);
             let ceiling = ceiling.map_or(0, |(_, ceiling)| *ceiling);
-            let allows = match rule {
-                // No debt, and no subgroup that is asked for, is a matter of more or less.
-                Rule::Debt => *value == ceiling,
-                _ if *number == "asked" => *value == ceiling,
+            // A subgroup that is asked for is no matter of more or less.
+            let allows = match *number {
+                "asked" => *value == ceiling,
                 _ => *value <= ceiling,
             };
             if !allows {
@@ -137,27 +112,17 @@ fn differences(
                 ));
             }
         }
-        if rule == Rule::Debt && entry.debt.is_empty() {
-            all.push(format!("{name}: \"{item}\" needs a sentence, in `debt`"));
-        }
     }
     let gone = allowed.keys().filter(|item| !table.contains_key(*item));
     all.extend(gone.map(|item| format!("{name}: \"{item}\" is in the file and no longer there")));
     all
 }
 
-fn renewed(before: &BTreeMap<String, Entry>, table: &Table, rule: Rule) -> BTreeMap<String, Entry> {
+fn renewed(table: &Table, rule: Rule) -> BTreeMap<String, Entry> {
     let entry = |(item, numbers): (&String, &Numbers)| {
         let allowance =
             |(name, value): &(&str, u64)| (name.to_string(), rule.allowance(name, *value));
-        let entry = Entry {
-            numbers: numbers.iter().map(allowance).collect(),
-            debt: before
-                .get(item)
-                .map(|entry| entry.debt.clone())
-                .unwrap_or_default(),
-        };
-        (item.clone(), entry)
+        (item.clone(), numbers.iter().map(allowance).collect())
     };
     table.iter().map(entry).collect()
 }
@@ -175,14 +140,10 @@ fn text(budget: &Budget) -> String {
         }
         text += &format!("[{name}]\n");
         for (item, entry) in table {
-            let mut fields: Vec<String> = entry
-                .numbers
+            let fields = entry
                 .iter()
-                .map(|(name, value)| format!("{name} = {value}"))
-                .collect();
-            if !entry.debt.is_empty() {
-                fields.push(format!("debt = \"{}\"", entry.debt));
-            }
+                .map(|(name, value)| format!("{name} = {value}"));
+            let fields: Vec<String> = fields.collect();
             text += &format!("\"{item}\" = {{ {} }}\n", fields.join(", "));
         }
     }
@@ -214,22 +175,15 @@ fn parse(text: &str) -> Budget {
     budget
 }
 
-/// `"name" = { number = 1, number = 2, debt = "a sentence" }`
+/// `"name" = { number = 1, number = 2 }`
 fn entry(line: &str) -> Option<(String, Entry)> {
     let (item, rest) = line.strip_prefix('"')?.split_once("\" = { ")?;
-    let rest = rest.strip_suffix(" }")?;
-    let (numbers, debt) = match rest.split_once(", debt = \"") {
-        Some((numbers, debt)) => (numbers, debt.strip_suffix('"')?),
-        None => (rest, ""),
-    };
+    let numbers = rest.strip_suffix(" }")?;
     let number = |field: &str| {
         let (name, value) = field.split_once(" = ")?;
         Some((name.to_owned(), value.parse().ok()?))
     };
-    let entry = Entry {
-        numbers: numbers.split(", ").map(number).collect::<Option<_>>()?,
-        debt: debt.to_owned(),
-    };
+    let entry = numbers.split(", ").map(number).collect::<Option<_>>()?;
     Some((item.to_owned(), entry))
 }
 
@@ -246,34 +200,22 @@ fn the_file_is_read_as_it_is_written() {
 #[test]
 fn every_difference_is_told() {
     let file = parse(
-        "[t]\n\"gone\" = { a = 1 }\n\"more\" = { a = 1, b = 2 }\n\"less\" = { a = 3 }\n\
-         \"debt\" = { a = 3, debt = \"Why, and what for.\" }\n",
+        "[t]\n\"gone\" = { a = 1 }\n\"more\" = { a = 1, b = 2 }\n\"less\" = { a = 3, asked = 64 }\n",
     );
     let found = Table::from([
         ("more".into(), vec![("a", 2), ("b", 2)]),
-        ("less".into(), vec![("a", 2)]),
-        ("debt".into(), vec![("a", 3)]),
+        ("less".into(), vec![("a", 2), ("asked", 32)]),
         ("new".into(), vec![("a", 7), ("b", 8)]),
     ]);
     assert_eq!(
-        differences("t", &found, &file["t"], Rule::Ceiling),
+        differences("t", &found, &file["t"]),
         [
+            "t: \"less\" has asked 32, and the file says 64",
             "t: \"more\" has a 2, and the file says 1",
             "t: \"new\" is not in the file; it has a 7, b 8",
             "t: \"gone\" is in the file and no longer there",
         ]
     );
-    let debts = differences("t", &found, &file["t"], Rule::Debt);
-    assert!(debts.contains(&"t: \"less\" has a 2, and the file says 3".to_owned()));
-    assert!(debts.contains(&"t: \"less\" needs a sentence, in `debt`".to_owned()));
-    assert!(
-        !debts.iter().any(|line| line.contains("\"debt\"")),
-        "{debts:?}"
-    );
-    let again = renewed(&file["t"], &found, Rule::CompilersCeiling);
-    assert_eq!(again["debt"], file["t"]["debt"]);
-    assert_eq!(
-        differences("t", &found, &again, Rule::CompilersCeiling),
-        [""; 0]
-    );
+    let again = renewed(&found, Rule::CompilersCeiling);
+    assert_eq!(differences("t", &found, &again), [""; 0]);
 }

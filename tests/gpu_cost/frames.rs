@@ -87,24 +87,6 @@ impl Frame {
     }
 }
 
-/// What a drawn frame has left.
-pub struct Drawn {
-    pub recorded: RecordedCommands,
-    renderer: Renderer,
-}
-
-impl Drawn {
-    pub fn new(recorded: RecordedCommands, renderer: Renderer) -> Self {
-        Self { recorded, renderer }
-    }
-
-    /// The bytes of a working buffer.
-    pub fn buffer(&self, name: &str) -> Vec<u8> {
-        let bytes = self.renderer.working_buffer(name);
-        bytes.unwrap_or_else(|| panic!("there is no buffer {name}"))
-    }
-}
-
 /// A device, and all that frames are drawn of.
 pub struct Frames {
     renderer: Renderer,
@@ -167,11 +149,11 @@ impl Frames {
         rasters.into_iter().flat_map(frames).collect()
     }
 
-    /// Draws a frame, from nothing but the frames that it is to take over from. Nothing is drawn of one for which the host has
+    /// Draws a frame and returns its commands, from nothing but the frames that it is to take over from. Nothing is drawn of one for which the host has
     /// to have a depth, only its pipelines are made.
-    pub fn draw(&self, frame: &Frame) -> Drawn {
+    pub fn draw(&self, frame: &Frame) -> RecordedCommands {
         let mut recorded = RecordedCommands::default();
-        let renderer = self.configured(frame, |renderer, scene, configured| {
+        self.configured(frame, |renderer, scene, configured| {
             let submitted = self.device.submit_and_wait(|cmd| {
                 // SAFETY: `cmd` is recording outside rendering, and all that is used outlives the wait.
                 unsafe { renderer.prepare(cmd, scene, None, configured) }
@@ -179,7 +161,7 @@ impl Frames {
             submitted.unwrap_or_else(|error| panic!("{}: {error}", frame.name));
             recorded = self.device.recorded();
         });
-        Drawn { recorded, renderer }
+        recorded
     }
 
     /// Records a frame, its draws into `target` included, and submits nothing.
@@ -208,7 +190,7 @@ impl Frames {
         &self,
         frame: &Frame,
         mut record: impl FnMut(&mut Renderer, &SceneBuffers, rara::ConfiguredFrame),
-    ) -> Renderer {
+    ) {
         let mut desc = RendererDesc::new(FORMAT)
             .reuse(true)
             .bindings(self.bindings);
@@ -247,7 +229,6 @@ impl Frames {
                 record(&mut renderer, scene, configured);
             }
         }
-        renderer
     }
 
     fn clip(&self, planes: usize, moves: u32) -> Clip {

@@ -2,7 +2,7 @@
 
 use rara_gpu::{Bindings, Device, DeviceDesc, DeviceShape, ImageDesc};
 
-use crate::frames::{FORMAT, Frames, SMALL};
+use crate::gpu_cost::frames::{FORMAT, Frames, SMALL};
 
 /// Barriers follow from what the shaders declare and the order of the passes, so that a frame need only be recorded to find one
 /// that is missing: nothing is drawn, and nothing compiled. All other tests reach most buffers by address, as users do, which the

@@ -7,9 +7,9 @@ use std::{env, fs};
 
 use rara_gpu::{CompiledShader, DeviceDesc, DeviceShape};
 
-use crate::budget::{self, Numbers, Rule, Table};
 use crate::common::folder::Folder;
-use crate::frames::{Frames, LARGE, SMALL};
+use crate::gpu_cost::budget::{self, Numbers, Rule, Table};
+use crate::gpu_cost::frames::{Frames, LARGE, SMALL};
 use crate::spirv;
 
 /// Generations of AMD's GPUs, by the names that Mesa gives them: RDNA 2 and 3, with subgroups of 32 and of 64, and GCN, with
@@ -17,7 +17,7 @@ use crate::spirv;
 const GPUS: [&str; 3] = ["navi21", "navi31", "vega10"];
 
 /// Where a child process writes what it has found.
-pub const OUT: &str = "RARA_GPU_COST_OUT";
+const OUT: &str = "RARA_GPU_COST_OUT";
 
 /// Our names of numbers, and the driver's names of those that are added up.
 const NUMBERS: [(&str, &[&str]); 5] = [
@@ -40,7 +40,7 @@ fn pipelines_take_no_more_of_a_gpu_than_budgeted() {
         }
     };
     let folder = Folder::new("gpu_cost");
-    let test = "pipelines::of_the_device_that_is_pretended";
+    let test = "gpu_cost::pipelines::of_the_device_that_is_pretended";
     let children = GPUS.map(|gpu| (gpu, driver.start(gpu, test, &folder.join(gpu))));
     let mut found = BTreeMap::new();
     for (gpu, child) in children {
@@ -60,14 +60,14 @@ fn pipelines_take_no_more_of_a_gpu_than_budgeted() {
 }
 
 /// The driver, and the library that pretends there is a GPU.
-pub struct Driver {
+struct Driver {
     shim: PathBuf,
     description: PathBuf,
 }
 
 impl Driver {
     /// Where Debian puts them.
-    pub fn find() -> Result<Self, String> {
+    fn find() -> Result<Self, String> {
         let libraries = format!("/usr/lib/{}-linux-gnu", env::consts::ARCH);
         let shim = Path::new(&libraries).join("libamdgpu_noop_drm_shim.so");
         if !shim.exists() {
@@ -90,7 +90,7 @@ impl Driver {
     }
 
     /// Starts a test of this executable once more, on a device of that kind.
-    pub fn start(&self, gpu: &str, test: &str, out: &Path) -> Child {
+    fn start(&self, gpu: &str, test: &str, out: &Path) -> Child {
         let mut command = Command::new(env::current_exe().expect("this executable"));
         command
             .args(["--exact", test, "--ignored", "--nocapture"])
@@ -165,7 +165,7 @@ fn name(shader: &CompiledShader) -> String {
 }
 
 /// What a shader declares.
-pub fn declarations(file: &str) -> spirv::Declarations {
+fn declarations(file: &str) -> spirv::Declarations {
     let modules = Path::new(env!("CARGO_MANIFEST_DIR")).join("glsl/spirv");
     let bytes = fs::read(modules.join(format!("{file}.bound.spv"))).expect("a committed module");
     spirv::declarations(&bytemuck::pod_collect_to_vec::<u8, u32>(&bytes))

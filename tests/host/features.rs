@@ -6,8 +6,8 @@ use std::ffi::c_void;
 use std::mem::ManuallyDrop;
 use std::ptr::null_mut;
 
-use crate::host;
-use crate::host::validation::{self, Messages};
+use crate::canvas::host;
+use crate::canvas::host::validation::{self, Messages};
 use rara::ash::{Device, Entry, Instance, vk};
 use rara::gpu::{self, AdoptDesc, Support};
 use rara::scene::{Kind, generate};

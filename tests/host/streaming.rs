@@ -2,8 +2,8 @@
 //! or wait of ours, under the host's validation with synchronisation checks. The pictures are the headless ones.
 
 use crate::canvas::adopt;
+use crate::canvas::host::{FRAMES, Host, HostDesc};
 use crate::common;
-use crate::host::{FRAMES, Host, HostDesc};
 use rara::ash::vk;
 use rara::scene::{Kind, generate};
 use rara::{

@@ -4,9 +4,10 @@ use std::io::{BufRead, BufReader, ErrorKind, Lines, Read, Write};
 use std::net::TcpStream;
 use std::path::Path;
 use std::process::{Child, ChildStdout, Command, Stdio};
-use std::time::Duration;
 
 use serde_json::{Value, json};
+
+use crate::folder::PATIENCE;
 
 /// Keys, as WebDriver has them.
 pub(crate) const TAB: &str = "\u{e004}";
@@ -15,9 +16,6 @@ pub(crate) const HOME: &str = "\u{e011}";
 pub(crate) const LEFT: &str = "\u{e012}";
 pub(crate) const UP: &str = "\u{e013}";
 pub(crate) const RIGHT: &str = "\u{e014}";
-
-/// How long one command may take.
-const PATIENCE: Duration = Duration::from_secs(30);
 
 /// How often chromedriver is started before it names a port. It chooses one of IPv6 and ends if another program has that
 /// of IPv4.

@@ -1,14 +1,13 @@
 //! A participant answers the whole user study by the keyboard, on a page as wide as a phone's.
 
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
 
 use rara::{HeadlessDesc, Mode};
 use rara_lab::study::{self, Metric, StudyOptions, StudyPage};
 use serde_json::json;
 
 use crate::browser::{Browser, ENTER, HOME, LEFT, RIGHT, TAB, UP};
-use crate::folder::Folder;
+use crate::folder::{Folder, until};
 
 /// A study of twenty cases whose pictures are tiny.
 fn tiny(folder: &Path) -> StudyPage {
@@ -89,7 +88,6 @@ fn check_sweep(browser: &Browser) {
     tab_to(browser, "#place");
     for (key, place) in [(HOME, 0), (RIGHT, 1), (RIGHT, 2)] {
         browser.press(key);
-        let begin = Instant::now();
         let shown = format!(
             "const {{ columns, size }} = STUDY.sweep;
              const [x, y] = [({place} % columns) * size, Math.floor({place} / columns) * size];
@@ -107,27 +105,17 @@ fn check_sweep(browser: &Browser) {
                return pixels(canvas) === pixels(other) && find('place').value === '{place}';
              }}));"
         );
-        while browser.text(&shown) != "true" {
-            assert!(
-                begin.elapsed() < Duration::from_secs(10),
-                "place {place} is not shown"
-            );
-            std::thread::sleep(Duration::from_millis(20));
-        }
+        until(&format!("place {place}"), || {
+            (browser.text(&shown) == "true").then_some(())
+        });
     }
     assert_eq!(browser.text("return find('play').textContent"), "Play");
 }
 
 /// The file that the page has saved.
 fn saved(folder: &Path, name: &str) -> PathBuf {
-    let (file, begin) = (folder.join(name), Instant::now());
-    while !file.exists() {
-        assert!(
-            begin.elapsed() < Duration::from_secs(10),
-            "{name} is not saved"
-        );
-        std::thread::sleep(Duration::from_millis(20));
-    }
+    let file = folder.join(name);
+    until(name, || file.exists().then_some(()));
     file
 }
 

@@ -3,7 +3,10 @@
 use crate::common;
 use glam::{DQuat, DVec3, Vec3};
 use rara::scene::{Kind, generate};
-use rara::{Aov, Camera, Clip, ClipOp, Gaussians, Mode, Projection, Raster, Settings, Show};
+use rara::{
+    Aov, Camera, Clip, ClipOp, Gaussians, Headless, Layer, LayerState, Mode, Placement, Projection,
+    Raster, Scene, Settings, Show,
+};
 
 #[test]
 fn headless_expected_depths_are_the_references() {
@@ -69,25 +72,62 @@ fn normals_are_turned_to_the_eye_and_not_to_its_plane() {
     let camera = Camera::look_at(DVec3::ZERO, DVec3::Z, -DVec3::Y, 90.0, (64, 64));
     let camera = camera.expect("a view");
     let flat = camera.projection(Projection::Orthographic);
-    let (clip, settings) = (Clip::default(), Settings::default());
     let mut headless = common::headless();
     headless.load(&disc).expect("uploads");
     for (camera, expected) in [(camera, normal), (flat.fx(20.0).fy(20.0), -normal)] {
-        let frame = (&camera, &clip, &settings);
-        let channels = headless.channels(&[Aov::Normal], frame);
-        let channels = channels.expect("channels");
-        let [x, y, z] = channels.as_slice() else {
-            panic!("{} channels", channels.len());
-        };
-        let all = x.values.iter().zip(&y.values).zip(&z.values);
-        let all = all.map(|((x, y), z)| Vec3::new(*x, *y, *z).as_dvec3());
-        let shown: Vec<_> = all.filter(|found| *found != DVec3::ZERO).collect();
-        assert!(shown.len() > 10, "{} pixels", shown.len());
-        for found in shown {
+        for found in normals(&mut headless, &camera) {
             assert!(found.distance(expected) < 1e-3, "{found}, not {expected}");
         }
     }
     headless.close().expect("nothing to validate");
+}
+
+/// Parallel lines of sight see a disc of a turned layer from the same side, whichever axis of the scene they follow.
+#[test]
+fn normals_of_a_turned_layer_are_turned_to_parallel_lines_of_sight() {
+    let normal = DVec3::new(0.5, -0.6, 0.62).normalize();
+    let mut disc = Gaussians::default();
+    let own = DQuat::from_rotation_arc(DVec3::Z, normal).as_quat();
+    let thin = Vec3::new(0.15, 0.15, 0.001);
+    disc.push(Vec3::new(0.3, -0.1, 0.2), thin, own, 0.9, &[0.0; 3]);
+    let turn = DQuat::from_axis_angle(DVec3::new(0.3, 0.9, -0.2).normalize(), 2.5);
+    let placement = Placement::new(DVec3::new(5.0, -3.0, 2.0), turn, 2.0).expect("a placement");
+    let target = placement.to_world(disc.centre(0));
+    let layer = Layer::new("turned", &disc).with(LayerState::default().placement(placement));
+    let mut headless = common::headless();
+    headless.load(Scene::from_iter([layer])).expect("uploads");
+    for sight in [DVec3::X, DVec3::Y, DVec3::Z]
+        .into_iter()
+        .flat_map(|axis| [axis, -axis])
+    {
+        let up = if sight.y == 0.0 { -DVec3::Y } else { DVec3::Z };
+        let camera = Camera::orthographic(target - 4.0 * sight, target, up, 1.0, (32, 32));
+        let camera = camera.expect("a view");
+        let seen = turn * normal;
+        let expected = -seen.dot(sight).signum() * seen;
+        for found in normals(&mut headless, &camera) {
+            assert!(
+                found.distance(expected) < 1e-3,
+                "{sight}: {found}, not {expected}"
+            );
+        }
+    }
+    headless.close().expect("nothing to validate");
+}
+
+/// The normals of the pixels that have one.
+fn normals(headless: &mut Headless, camera: &Camera) -> Vec<DVec3> {
+    let frame = (camera, &Clip::default(), &Settings::default());
+    let channels = headless.channels(&[Aov::Normal], frame);
+    let channels = channels.expect("channels");
+    let [x, y, z] = channels.as_slice() else {
+        panic!("{} channels", channels.len());
+    };
+    let all = x.values.iter().zip(&y.values).zip(&z.values);
+    let all = all.map(|((x, y), z)| Vec3::new(*x, *y, *z).as_dvec3());
+    let shown: Vec<_> = all.filter(|found| *found != DVec3::ZERO).collect();
+    assert!(shown.len() > 10, "{} pixels", shown.len());
+    shown
 }
 
 #[test]

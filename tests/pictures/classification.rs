@@ -256,3 +256,34 @@ fn modes_without_a_band_call_nothing_cut() {
         assert!(!sides.contains(&Side::Cutoff));
     }
 }
+
+/// A disc without thickness that lies in the plane of a cut is halved like one of any other thickness, and not kept by both sides.
+#[test]
+fn a_disc_in_the_plane_of_the_cut_is_halved() {
+    let mut headless = common::headless();
+    let camera = view_from(6.0);
+    let turn = DQuat::from_euler(glam::EulerRot::XYZ, 0.4, -0.2, 0.9);
+    let mut draw = |thickness: f32, clip: &Clip| {
+        let disc = one(Vec3::new(0.5, 0.7, thickness), turn.as_quat(), 0.9);
+        headless.load(&disc).expect("uploads");
+        headless
+            .render(&camera, clip, &Settings::default())
+            .expect("renders");
+        headless.picture().expect("reads back").at(128, 128)[3]
+    };
+    for normal in [DVec3::Z, turn * DVec3::Z] {
+        let clip = cut_by(normal, 0.0);
+        let [kept, rest] = [&clip, &clip.complement()].map(|clip| draw(0.0, clip));
+        let like = draw(1e-5, &clip);
+        let whole = draw(0.0, &Clip::default());
+        assert!(
+            (kept - like).abs() < 1e-4,
+            "{normal}: {kept}, with a thickness {like}"
+        );
+        let both = 1.0 - (1.0 - kept) * (1.0 - rest);
+        assert!(
+            (both - whole).abs() < 1e-4,
+            "{normal}: halves of {both}, the whole is {whole}"
+        );
+    }
+}

@@ -263,7 +263,10 @@ fn requests_in_flight_have_answers_of_their_own() {
     let outside = rect(90, 0, 7, 1);
     let refused = headless.pick(&camera, &clip, &settings, outside);
     let text = refused.expect_err("it reaches out").to_string();
-    assert!(text.contains("no part of a picture of 96x64"), "{text}");
+    assert!(
+        text.contains("is not inside the picture of 96x64 px"),
+        "{text}"
+    );
     drop((picker, buffers));
     drop(device);
     headless.close().expect("no validation messages");

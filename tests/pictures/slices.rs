@@ -51,7 +51,7 @@ fn only_tiles_count() {
     let settings = Settings::default().show(Show::Count).raster(Raster::Quad);
     let error = headless.render(&camera, &Clip::default(), &settings);
     let error = error.expect_err("quads cannot").to_string();
-    assert!(error.contains("by tiles alone"), "{error}");
+    assert!(error.contains("only tiles can draw"), "{error}");
 }
 
 /// Two layers of large splats, of which one is placed, against sums over the splats at each pixel's point of the plane.

@@ -1,4 +1,4 @@
-//! The stress suite under validation: what `rara stress --validation` prints, held to its targets.
+//! The stress suite under validation: what `rara-lab stress --validation` prints, held to its targets.
 
 use crate::common;
 use rara_lab::stress::{self, Regime, RegimeRow};

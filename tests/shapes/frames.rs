@@ -1,8 +1,8 @@
 //! The same frame by several kinds of pipelines, and all that they leave of it.
 
 use rara::gpu::{Bindings, DeviceShape};
-use rara::types::{FrameCounts, FrameData};
-use rara::{Camera, Clip, Headless, Picture, Raster, Scene, Settings};
+use rara::types::{FrameCounts, FrameData, Gaussian};
+use rara::{Camera, Clip, Gaussians, Headless, Picture, Raster, Scene, Settings};
 use rara_base::limits::SORT_BITS;
 
 use crate::common;
@@ -59,6 +59,33 @@ impl Shapes {
         let (_, renderer) = self.renderers.last_mut().expect("several");
         let bytes = renderer.working_buffer("counts").expect("the counts");
         bytemuck::pod_read_unaligned(&bytes)
+    }
+
+    /// One of the renderers for GPUs, by turns.
+    pub fn for_gpus(&mut self, turn: usize) -> &mut Headless {
+        let [_, gpus @ ..] = &mut self.renderers[..] else {
+            panic!("several");
+        };
+        let count = gpus.len();
+        &mut gpus[turn % count].1
+    }
+
+    /// The numbers of the splats that one of the renderers for GPUs draws as quads, in their order.
+    pub fn numbers_in_order(&mut self, scene: &Gaussians, camera: &Camera) -> Vec<u32> {
+        let renderer = self.for_gpus(0);
+        renderer.load(scene).expect("uploads");
+        let settings = Settings::default().raster(Raster::Quad);
+        let drawn = renderer.render(camera, &Clip::default(), &settings);
+        let drawn = drawn.expect("renders").counts.drawn as usize;
+        let (.., [_, order]) = constants(renderer);
+        let mut words = |name: &str| -> Vec<u32> {
+            bytemuck::pod_collect_to_vec(&read(renderer, name, 4 * drawn))
+        };
+        let (order, gaussians) = (words(order), words("splat_gaussians"));
+        let stored = read(renderer, "gaussians", scene.len() * size_of::<Gaussian>());
+        let stored: Vec<Gaussian> = bytemuck::pod_collect_to_vec(&stored);
+        let number = |splat: &u32| stored[gaussians[*splat as usize] as usize].scale[3].to_bits();
+        order.iter().map(number).collect()
     }
 
     /// Draws a whole frame with each and compares them. Returns how many Gaussians are drawn.
@@ -126,38 +153,46 @@ impl Shapes {
     }
 }
 
+/// The content of a buffer, of which so many bytes count.
+fn read(renderer: &mut Headless, name: &str, bytes: usize) -> Vec<u8> {
+    let content = renderer.working_buffer(name);
+    let mut content = content.unwrap_or_else(|| panic!("there is no buffer {name}"));
+    assert!(content.len() >= bytes, "{name}");
+    content.truncate(bytes);
+    content
+}
+
+/// A frame's constants and counts, and the buffers in which its keys and their order are.
+fn constants(renderer: &mut Headless) -> (FrameData, FrameCounts, [&'static str; 2]) {
+    let frame = read(renderer, "frame", size_of::<FrameData>());
+    let frame: FrameData = bytemuck::pod_read_unaligned(&frame);
+    let counts = read(renderer, "counts", size_of::<FrameCounts>());
+    let span = frame.eye.order.key_span >> frame.eye.order.key_shift;
+    let passes = (u32::BITS - span.leading_zeros())
+        .div_ceil(SORT_BITS)
+        .max(1);
+    let sorted = [["keys", "order"], ["sorted_keys", "sorted_order"]][passes as usize % 2];
+    (frame, bytemuck::pod_read_unaligned(&counts), sorted)
+}
+
 fn draw(renderer: &mut Headless, camera: &Camera, clip: &Clip, settings: &Settings) -> Drawn {
     renderer.render(camera, clip, settings).expect("renders");
     let picture = renderer.picture().expect("reads back");
     let shape = renderer.device().shape();
-    let mut read = |name: &str, bytes: usize| {
-        let content = renderer.working_buffer(name);
-        let mut content = content.unwrap_or_else(|| panic!("there is no buffer {name}"));
-        assert!(content.len() >= bytes, "{name}");
-        content.truncate(bytes);
-        content
-    };
-    let frame: FrameData = bytemuck::pod_read_unaligned(&read("frame", size_of::<FrameData>()));
-    let counts: FrameCounts =
-        bytemuck::pod_read_unaligned(&read("counts", size_of::<FrameCounts>()));
+    let (frame, counts, [keys, order]) = constants(renderer);
     // Also those in view that a moved clip removes.
     let listed = counts.mesh_groups[3] as usize;
-    let span = frame.order.key_span >> frame.order.key_shift;
-    let passes = (u32::BITS - span.leading_zeros())
-        .div_ceil(SORT_BITS)
-        .max(1);
-    let [keys, order] = [["keys", "order"], ["sorted_keys", "sorted_order"]][passes as usize % 2];
-    let records = counts.cutoff as usize * frame.weight.cut_stride as usize * 16;
+    let records = counts.cutoff as usize * frame.eye.weight.cut_stride as usize * 16;
     let mut wanted = vec![
         ("splat_gaussians", 4 * listed),
         ("cutoffs", 4 * counts.cutoff as usize),
         ("cut_records", records),
     ];
-    let tiled = settings.raster == Raster::Tiles && frame.scene.gaussian_count > 0;
+    let tiled = settings.raster == Raster::Tiles && frame.cut.scene.gaussian_count > 0;
     // Where tiles are wanted the keys' buffers are used for more once the order is known.
     wanted.push((order, 4 * listed));
     if tiled {
-        let tiles = frame.tiles.tile_count as usize;
+        let tiles = frame.eye.tiles.tile_count as usize;
         wanted.push(("tile_begins", 4 * (tiles + 1)));
         wanted.push(("tile_splats", 4 * counts.pairs as usize));
         assert_eq!(counts.tiled, 1, "there is room");
@@ -167,21 +202,21 @@ fn draw(renderer: &mut Headless, camera: &Camera, clip: &Clip, settings: &Settin
     }
     let mut buffers: Vec<_> = wanted
         .into_iter()
-        .map(|(name, bytes)| (name, read(name, bytes)))
+        .map(|(name, bytes)| (name, read(renderer, name, bytes)))
         .collect();
-    let gaussians = frame.scene.gaussian_count as usize;
+    let gaussians = frame.cut.scene.gaussian_count as usize;
     if gaussians > 0 {
         let vectors = match shape {
             DeviceShape::Cpu => 4 * gaussians,
             _ => 4 * gaussians + gaussians.div_ceil(4),
         };
-        let splats = read("splats", 16 * vectors);
+        let splats = read(renderer, "splats", 16 * vectors);
         let splats: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(&splats);
         let splats = common::splats(&splats, gaussians, shape);
         buffers.push(("splats", bytemuck::cast_slice(&splats[..listed]).to_vec()));
     }
     let records = buffers.iter_mut().find(|(name, _)| *name == "cut_records");
-    let stride = frame.weight.cut_stride as usize * 16;
+    let stride = frame.eye.weight.cut_stride as usize * 16;
     if let Some((_, bytes)) = records.filter(|_| stride > 0) {
         bytes.chunks_mut(stride).for_each(clear_unused);
     }

@@ -7,8 +7,8 @@ use rara_base::limits::{TILE_HEIGHT, TILE_WIDTH};
 use rara_reference::bin::{self, Outline, Span};
 use rara_reference::{Real, ViewTransform, project, sort};
 
-use crate::frame::{self, SIZE, Stages};
-use crate::sort::places;
+use crate::stages::frame::{self, SIZE, Stages};
+use crate::stages::sort::places;
 
 /// How many deviations behind its plane a cut splat's weight counts as nothing.
 const TRIM_DEVIATIONS: f32 = 4.55;

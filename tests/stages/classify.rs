@@ -6,8 +6,8 @@ use rara::{Camera, Clip, ClipOp, Mode, Raster, Settings};
 use rara_base::limits::BLOCK_SIZE;
 use rara_reference::{Side, ViewTransform, classify};
 
-use crate::frame::{self, Stages};
-use crate::ties;
+use crate::stages::frame::{self, Stages};
+use crate::stages::ties;
 
 /// The side that the stages find for each Gaussian, in the device's order; `None` for one of which they do not keep
 /// whether it is culled or invisible: a block only counts these.

@@ -8,8 +8,8 @@ use rara_base::limits::{self, ALPHA_MIN, BLOCK_SIZE};
 use rara_reference::region::{Bounds, box_side};
 use rara_reference::{Side, clip};
 
-use crate::frame::{self, Stages};
-use crate::ties;
+use crate::stages::frame::{self, Stages};
+use crate::stages::ties;
 
 /// The side that the stage finds for each Gaussian, in the device's order.
 pub fn sides(stages: &mut Stages) -> Vec<Side> {

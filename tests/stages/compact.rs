@@ -5,8 +5,8 @@ use rara::{ClipOp, Mode, Raster, Settings};
 use rara_base::limits::SPLAT_GROUP_SIZE;
 use rara_reference::{Side, compact};
 
-use crate::classify;
-use crate::frame;
+use crate::stages::classify;
+use crate::stages::frame;
 
 #[test]
 fn splats_are_in_the_scenes_order() {

@@ -6,7 +6,7 @@ use rara_reference::{
     Footprint, HalfSpace, Real, SplatCut, Vec3 as Vector, ViewTransform, cutoff, vec3,
 };
 
-use crate::frame::{self, Stages};
+use crate::stages::frame::{self, Stages};
 
 /// The flags of a record: the planes are on each pixel's line of sight; the splat reaches behind the eye; a plane's z is
 /// a polynomial; the planes are the complements of a union's.

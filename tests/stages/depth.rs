@@ -9,8 +9,8 @@ use rara::{
 use rara_reference::depth;
 use rara_reference::{Footprint, Real, ViewTransform};
 
-use crate::frame;
-use crate::layers;
+use crate::stages::frame;
+use crate::stages::layers;
 
 /// The values that the stage has written of each splat, and the splat's number in the scene.
 fn depths<'a>(

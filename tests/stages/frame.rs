@@ -92,9 +92,9 @@ impl Stages {
         let frame: FrameData = self.read("frame")[0];
         let count = (counts.visible + counts.cutoff) as usize;
         let splat_gaussians: Vec<u32> = self.read("splat_gaussians");
-        let cuts = &splat_gaussians[frame.scene.gaussian_count as usize..];
+        let cuts = &splat_gaussians[frame.cut.scene.gaussian_count as usize..];
         // Only frames that may cut any say which are cut.
-        let may_cut = frame.region.mode >= MODE_RARA;
+        let may_cut = frame.cut.region.mode >= MODE_RARA;
         let cut = |i: usize| if may_cut { cuts[i] } else { NOT_CUT };
         (0..count).map(|i| [splat_gaussians[i], cut(i)]).collect()
     }
@@ -110,7 +110,7 @@ impl Stages {
     pub fn splats_in_view(&mut self, count: usize) -> Vec<Splat> {
         let frame: FrameData = self.read("frame")[0];
         let splats = self.read::<[f32; 4]>("splats");
-        let gaussians = frame.scene.gaussian_count as usize;
+        let gaussians = frame.cut.scene.gaussian_count as usize;
         let mut splats = common::splats(&splats, gaussians, self.headless.device().shape());
         splats.truncate(count);
         splats

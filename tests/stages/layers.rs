@@ -4,7 +4,7 @@ use glam::{DQuat, DVec3};
 use rara::types::Splat;
 use rara::{ClipOp, Layer, LayerState, Mode, Placement, Raster, Scene, Settings, ShFormat};
 
-use crate::frame::{self, Stages};
+use crate::stages::frame::{self, Stages};
 
 /// Placements by powers of two, which round no number.
 pub fn placements() -> [Placement; 3] {

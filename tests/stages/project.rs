@@ -4,8 +4,8 @@ use glam::{DMat4, Quat, Vec3};
 use rara::{Camera, Clip, Gaussians, Projection, Raster, Settings, ShFormat};
 use rara_reference::{ViewTransform, harmonics, project, vec3};
 
-use crate::frame::{self, Stages};
-use crate::ties::{largest, ulps};
+use crate::stages::frame::{self, Stages};
+use crate::stages::ties::{largest, ulps};
 
 /// How far apart device and twin are, each in units in the last place of what it was computed from.
 #[derive(Debug, Default, Clone, Copy)]

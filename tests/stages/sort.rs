@@ -9,7 +9,7 @@ use rara::{Clip, Raster, Settings};
 use rara_base::limits::SORT_BITS;
 use rara_reference::sort;
 
-use crate::frame::{self, Stages};
+use crate::stages::frame::{self, Stages};
 
 /// The splats' depths and their numbers in the scene.
 pub fn places(stages: &mut Stages) -> (Vec<f32>, Vec<u32>) {
@@ -34,7 +34,7 @@ fn check(stages: &mut Stages, what: &str) {
 /// keys gives the number of passes.
 fn sorted(stages: &mut Stages, count: usize) -> (Vec<u32>, Vec<u32>) {
     let frame: FrameData = stages.read("frame")[0];
-    let span = frame.order.key_span >> frame.order.key_shift;
+    let span = frame.eye.order.key_span >> frame.eye.order.key_shift;
     let bits = u32::BITS - span.leading_zeros();
     let passes = bits.div_ceil(SORT_BITS).max(1);
     let names = [("keys", "order"), ("sorted_keys", "sorted_order")][passes as usize % 2];
@@ -94,14 +94,6 @@ fn groups_of_one_depth_of_every_size_are_in_the_files_order() {
         layers.swap(at, at * 7919 % count);
     }
     check_depths(&mut Stages::new(), "every size", &layers);
-}
-
-/// More groups than a digit has values, each of more splats than a partition holds.
-#[test]
-#[ignore = "a million splats; run it where the sort for GPUs has changed"]
-fn many_large_ties_are_in_the_files_order() {
-    let layers: Vec<_> = (0..270 * 4_200).map(|index| index * 7919 % 270).collect();
-    check_depths(&mut Stages::new(), "270 large ties", &layers);
 }
 
 /// Pipelines that divide the keys into partitions of 4096 have a last one that is full, lacks one key, or holds a single one.

@@ -5,8 +5,8 @@ use rara::types::{CUT_AWAY, NOT_CUT, Quad, Splat};
 use rara::{Clip, ClipOp, Mode, Plane, Raster, Settings, Surface};
 use rara_reference::{Side, ViewTransform, classify};
 
-use crate::frame::{self, Stages};
-use crate::ties;
+use crate::stages::frame::{self, Stages};
+use crate::stages::ties;
 
 fn moved(clip: &Clip, by: f64) -> Clip {
     let planes = clip.surfaces.iter().filter_map(Surface::as_plane);

@@ -3,6 +3,7 @@
 use std::fs;
 
 use rara::Picture;
+use rara::clip::load_clips;
 
 use super::display::Display;
 use super::viewer::{Viewer, apart, done, draw, draws_again, draws_again_of, folder, rara};
@@ -99,8 +100,7 @@ fn layers_are_switched_and_cut_by_clips_of_their_own() {
     let list = r#"{"layers": [{"path": "scene.ply", "name": "outer skin"}, {"path": "more.ply", "visible": false},
         {"path": "scene.ply", "name": "k=v", "scale": 0.5, "clip_expr": "plane:0,1,0,0"}]}"#;
     fs::write(folder.join("list.json"), list).expect("a list");
-    let words =
-        "@/list.json --no-outline --background 0.2,0.4,0.6 --size 160x120 --clip plane:1,0,0,0";
+    let words = "@/list.json --no-outline --background 0.2,0.4,0.6 --size 160x120 --clip plane:1,0,0,0 --save-clip @/saved.json";
     let mut viewer = Viewer::open(&display, &folder, words);
     let mut shots: Vec<Picture> = Vec::new();
     let steps = [
@@ -124,6 +124,17 @@ fn layers_are_switched_and_cut_by_clips_of_their_own() {
     let printed = viewer.quit();
     for (name, _) in steps {
         draws_again_of(&folder, "@/list.json", name, &printed);
+    }
+    // What is saved is the clip at the end, not the one at the start.
+    let saved = load_clips(&folder.join("saved.json")).expect("clips");
+    let expected = [(None, "plane:1,0,0,-0.3"), (Some("more"), "sphere:")];
+    assert_eq!(saved.len(), expected.len());
+    for (one, (layer, begin)) in saved.iter().zip(expected) {
+        let text = one.clip.to_string();
+        assert!(
+            one.layer.as_deref() == layer && text.starts_with(begin),
+            "{layer:?} {text}"
+        );
     }
 }
 

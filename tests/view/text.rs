@@ -3,13 +3,12 @@
 use std::fs;
 use std::io::Write;
 use std::process::Stdio;
-use std::thread::sleep;
-use std::time::{Duration, Instant};
 
 use rara::Picture;
 
 use super::display::{Display, Owned};
 use super::viewer::{Viewer, apart, done, draws_again, draws_again_of, folder, rara, stderr};
+use crate::folder::until;
 
 /// The colours of papers and of bars.
 const PAPER: [u8; 3] = [22, 25, 30];
@@ -25,18 +24,6 @@ fn of_colour(picture: &Picture, colour: [u8; 3]) -> Vec<(u32, u32)> {
     let rows = 0..picture.height;
     let all = rows.flat_map(|y| (0..picture.width).map(move |x| (x, y)));
     all.filter(|(x, y)| is_it(*x, *y)).collect()
-}
-
-/// Waits until something is seen.
-fn until<T>(what: &str, mut seen: impl FnMut() -> Option<T>) -> T {
-    let last = Instant::now() + Duration::from_secs(60);
-    loop {
-        if let Some(seen) = seen() {
-            return seen;
-        }
-        assert!(Instant::now() < last, "{what} is not seen");
-        sleep(Duration::from_millis(20));
-    }
 }
 
 #[test]

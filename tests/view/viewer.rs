@@ -9,8 +9,8 @@ use std::time::{Duration, Instant};
 
 use rara::Picture;
 
-use crate::display::{Display, Owned};
-use crate::folder::Folder;
+use crate::folder::{Folder, PATIENCE, until};
+use crate::view::display::{Display, Owned};
 
 /// `rara view`, following a script line by line.
 pub(super) struct Viewer<'a> {
@@ -61,28 +61,26 @@ impl<'a> Viewer<'a> {
     pub(super) fn screenshot(&mut self, name: &str) -> Picture {
         self.say(&format!("screenshot @/{name}.png"));
         let path = self.folder.join(name);
-        let until = Instant::now() + Duration::from_secs(60);
         // The camera is the last file to be written.
-        while !path.with_extension("json").exists() {
+        until(&format!("screenshot {name}"), || {
             if let Some(status) = self.child.0.try_wait().expect("it can be asked") {
                 panic!("{status}: {}", self.printed());
             }
-            assert!(Instant::now() < until, "no screenshot in a minute");
-            sleep(Duration::from_millis(20));
-        }
+            path.with_extension("json").exists().then_some(())
+        });
         Picture::load(path.with_extension("png")).expect("a picture")
     }
 
     /// Waits until the window shows a picture, to 1/255.
     pub(super) fn shows(&self, what: &str, picture: &Picture) {
-        let until = Instant::now() + Duration::from_secs(20);
+        let begin = Instant::now();
         loop {
             let seen = self.display.corner(picture.width, picture.height);
             let off = apart(&seen, picture);
             if off <= 1.01 {
                 return;
             }
-            if Instant::now() > until {
+            if begin.elapsed() > PATIENCE {
                 let _ = seen.save(self.folder.join("seen.png"));
                 panic!(
                     "{what}: the window is off by {off}/255; {}/seen.png",

@@ -175,18 +175,20 @@ fn clips_are_made_of_planes() {
     for (planes, count, op, says) in [
         (there, 2, and, "planes[1]: the clip plane 0,0,0,1"),
         (there, 1, 2, "op 2 is no RaraClipOp"),
-        (there, 33, and, "at most 32"),
         (null(), 1, and, "planes is null"),
     ] {
         let (result, clip) = make(planes, count, op);
         assert_fails(result, RARA_ERROR_INVALID, says);
         assert!(clip.is_null());
     }
+    let prism = [plane(1.0); 200];
+    let (result, many) = make(prism.as_ptr(), prism.len(), and);
+    assert_eq!(result, RARA_OK);
     let (result, one) = make(there, 1, and);
     assert_eq!(result, RARA_OK);
     let (result, all) = make(null(), 0, RARA_CLIP_OP_OR);
     assert_eq!(result, RARA_OK);
-    for (clip, surfaces) in [(one, 1), (all, 0)] {
+    for (clip, surfaces) in [(many, 200), (one, 1), (all, 0)] {
         let made = super::clip(clip, "clip").expect("is alive");
         assert_eq!(made.expect("is no null").surfaces.len(), surfaces);
         // SAFETY: it is not used any more.

@@ -19,7 +19,7 @@ use super::output::{self, ProgressLine, counted, counted_are, say};
 use super::pictures::{Order, Plan, RunShare};
 use super::report::FrameRecord;
 use super::times;
-use super::{Command, needs_met, parsed};
+use super::{Command, program};
 use jobs::Job;
 pub(super) use jobs::save as save_job;
 use state::{Claim, State, StateRecord, Worker, stamp};
@@ -33,38 +33,42 @@ Examples:
   rara batch jobs.json --status
   rara render scene.ply -o view_{}.png --cameras cameras.json --view all --save-job jobs.json
 
-A job is a command as JSON: {\"scene\": \"a.ply\", \"output\": \"a.png\", \"clip\": [\"plane:z=40%\"], \"size\": \"512x512\"}. \
-\"scene\" is a file or a list of layers, and every other key is a flag of rara render, or of rara sweep beside \
-\"command\": \"sweep\"; true is a flag without a value. A file has one job, several jobs one after the other, a list of them, \
-or {\"jobs\": [...]} beside keys that all of them share. \"for\": {\"z\": \"0..100:101\", \"scan\": [\"a\", \"b\"]} makes a job of \
-each combination: ${z} stands for the value, ${z:03} for a number with zeros before it, 0..9 for whole numbers with both ends, \
-and 0..1:11 for 11 numbers in equal steps. Paths are relative to the working directory.
+A job is a command, written as JSON: {\"scene\": \"a.ply\", \"output\": \"a.png\", \"clip\": [\"plane:z=40%\"], \"size\": \
+\"512x512\"}. \"scene\" is a file or a list of layers. Every other key is a flag of rara render, or of rara sweep if the \
+job has \"command\": \"sweep\". The value true stands for a flag that takes no value. A file contains one job, several \
+jobs one after the other, a list of jobs, or {\"jobs\": [...]}; keys beside \"jobs\" apply to all jobs of the list. Paths \
+are relative to the working directory.
 
-What is done is noted in the folder of --state, also by workers on other machines, and is not done again. Array jobs of Slurm \
-and SGE draw their share; those of Kubernetes and PBS too if RARA_SHARDS says how many there are. A worker that is told to end, \
-or is killed, leaves pictures that are whole: start it again to draw the rest. The exit status is 1 if a picture is missing.")]
+\"for\": {\"z\": \"0..100:101\", \"scan\": [\"a\", \"b\"]} makes one job for each combination of its values. 0..9 stands \
+for the whole numbers from 0 to 9, and 0..1:11 for 11 numbers from 0 to 1 in equal steps. In the other keys of the job, \
+${z} stands for the value of z, and ${z:03} for the value with leading zeros.
+
+Workers record finished pictures in the folder of --state and do not draw them again. Workers on several machines may \
+share this folder. In an array job of Slurm or SGE, each task draws its share. Tasks of Kubernetes and PBS do so too if \
+RARA_SHARDS is set to the number of tasks. A worker that is killed leaves no partial pictures: start it again to draw the \
+rest. The exit status is 1 if a picture is missing.")]
 pub(super) struct Batch {
     /// Files of jobs; - is standard input
     #[arg(value_name = "JOBS", required = true)]
     files: Vec<PathBuf>,
-    /// Draw only share K of N
+    /// Divide the pictures into N shares, and draw only share K, from 1 to N
     ///
-    /// Shares take about equally long, and are the same each time.
+    /// All shares take about equally long. The same K and N always give the same share.
     #[arg(long, value_name = "K/N")]
     shard: Option<RunShare>,
-    /// Folder of what is done [default: the name of the first file and .done]
+    /// Folder that records finished pictures [default: the first file's name plus .done]
     #[arg(long, value_name = "DIR")]
     state: Option<PathBuf>,
-    /// Draw pictures again that another job, version or driver has drawn
+    /// Redraw pictures whose job has changed, or that another version or driver drew
     #[arg(long)]
     redraw: bool,
-    /// Say what is done and what is missing, and draw nothing
+    /// Print which pictures are done and which are missing, and draw nothing
     #[arg(long)]
     status: bool,
-    /// Say what pictures have taken, and draw nothing
+    /// Print how long the finished pictures took, and draw nothing
     #[arg(long, conflicts_with = "status")]
     report: bool,
-    /// Print that, or the statistics of each picture as a line, as JSON
+    /// Print JSON: the result of --status or --report, or a line of statistics per picture
     #[arg(long)]
     json: bool,
 }
@@ -293,9 +297,8 @@ impl Batch {
 
 impl Job {
     fn command(&self) -> Result<Command, Failure> {
-        let (cli, typed) = parsed(self.words.iter().cloned())?;
-        needs_met(&typed)?;
-        Ok(cli.command)
+        let command = program::command(self.words.iter().cloned())?;
+        Ok(command.expect("every job is a command of rara"))
     }
 }
 

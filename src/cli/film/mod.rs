@@ -15,9 +15,9 @@ use rara::{Error, Picture, Result};
 use rara_base::files::PartialFile;
 
 use super::failure::Failure;
-use super::output;
-use super::pattern::filled;
-use super::values::{self, STANDARD};
+use super::output::{self, STANDARD};
+use super::pattern::is_several;
+use super::values;
 use apng::Apng;
 #[cfg(unix)]
 pub(super) use video::abandon;
@@ -27,19 +27,22 @@ use video::{Container, Video};
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Paths, films and panoramas")]
 pub(super) struct FilmArgs {
-    /// Pictures a second of a film [default: 30]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1000))]
+    /// Pictures per second of a film [default: the camera path's, or else 30]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=i64::from(MOST_FPS)))]
     fps: Option<u16>,
-    /// What -o - writes
+    /// The format that -o - writes to standard output
     ///
-    /// A picture as png, all of them as apng, or their bare bytes one after the other as rgba.
+    /// png is for a single picture. apng is a film of all pictures. rgba is the pixels of all pictures without a header.
     #[arg(long, value_name = "FORMAT")]
     format: Option<Stream>,
-    /// Keep the transparency of a .mov (PNG, without loss) or a .webm (VP9)
+    /// Keep the transparency in a .mov (PNG, lossless) or a .webm (VP9)
     ///
-    /// An .apng always does, .mp4 and .mkv cannot.
+    /// An .apng always keeps it; .mp4 and .mkv cannot.
     #[arg(long)]
     alpha: bool,
+    /// Pictures a second that a file of cameras says.
+    #[arg(skip)]
+    said: Option<u16>,
 }
 
 /// What goes to standard output.
@@ -47,11 +50,12 @@ pub(super) struct FilmArgs {
 enum Stream {
     Png,
     Apng,
-    /// 8 bits each, row by row from the top left, un-premultiplied.
+    /// 8 bits per channel, row by row from the top left, un-premultiplied.
     Rgba,
 }
 
 const FPS: u16 = 30;
+const MOST_FPS: u16 = 1000;
 
 /// The endings of films that are ffmpeg's.
 pub(super) const ENDINGS: &str = ".mp4, .mov, .mkv or .webm";
@@ -101,6 +105,19 @@ impl FilmFormat {
 }
 
 impl FilmArgs {
+    /// Takes what a file of cameras says, as a whole number.
+    pub(super) fn pace(&mut self, fps: Option<f64>) {
+        let whole = |fps: f64| fps.round().clamp(1.0, MOST_FPS.into());
+        if let Some(fps) = fps.filter(|fps| self.fps.is_none() && whole(*fps) != *fps) {
+            output::say(format_args!(
+                "note: the camera path's rate of {fps} a second is taken for {}, if a film is made; --fps takes other whole \
+                 numbers",
+                whole(fps)
+            ));
+        }
+        self.said = fps.map(|fps| whole(fps) as u16);
+    }
+
     /// The kind of film that is asked for; none for pictures.
     pub(super) fn kind(
         &self,
@@ -138,7 +155,7 @@ impl FilmArgs {
 
     /// Fails early where such a film could not be written to `file`.
     pub(super) fn check(&self, kind: FilmFormat, file: &Path) -> std::result::Result<(), Failure> {
-        if filled(file, 0, "a") != filled(file, 1, "b") {
+        if is_several(file) {
             return Err(Failure::Usage(
                 "a film is one file: leave the braces out of its name, or name numbered pictures, as frame_{:04}.png".into(),
             ));
@@ -157,7 +174,7 @@ impl FilmArgs {
         size: (u32, u32),
         frames: usize,
     ) -> Result<Film> {
-        let fps = self.fps.unwrap_or(FPS);
+        let fps = self.fps.or(self.said).unwrap_or(FPS);
         let place = match file == Path::new(STANDARD) {
             true => FilmTarget::Stdout,
             false => FilmTarget::File(PartialFile::begin(file)?),

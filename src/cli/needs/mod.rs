@@ -19,9 +19,11 @@ enum Need {
     Other(&'static str, &'static str),
     /// Two of these flags, or one of them twice.
     Two(&'static [&'static str]),
+    /// This flag must not be given.
+    Without(&'static str),
 }
 
-use Need::{Flag, Other, Two, Value};
+use Need::{Flag, Other, Two, Value, Without};
 
 /// The needs of the flags that have any, by the flags' names in the definitions; where a command has none of the flags
 /// that are needed, it needs nothing. Where a value is needed a note says so, since scripts give such flags to one value
@@ -47,6 +49,7 @@ const NEEDS: &[(&str, Need)] = &[
     ("frames", Flag(&["path"])),
     // Sections.
     ("section_thickness", Flag(&["section"])),
+    ("section_thickness", Without("slice")),
     ("section_scale", Flag(&["section"])),
     ("slice", Flag(&["section"])),
     ("outline", Flag(&["section"])),
@@ -82,7 +85,6 @@ const NEEDS: &[(&str, Need)] = &[
     ("validation", Other("views", "0")),
     ("no_pipeline_cache", Other("views", "0")),
     // Of single commands.
-    ("child", Flag(&["scene_files"])),
     ("children", Value("mode", &["exact", "rara"])),
     ("leave", Value("mode", &["exact", "rara"])),
 ];
@@ -99,7 +101,13 @@ pub(super) fn check(command: &Command, typed: &ArgMatches) -> Result<(), Failure
         match need.missing(command, typed) {
             None => {}
             Some((what, true)) => {
-                output::say(format_args!("note: {shown} changes nothing without {what}"));
+                let relation = match need {
+                    Without(_) => "beside",
+                    _ => "without",
+                };
+                output::say(format_args!(
+                    "note: {shown} changes nothing {relation} {what}"
+                ));
             }
             Some((what, false)) => {
                 let give = match need.rival(command, typed) {
@@ -145,6 +153,7 @@ impl Need {
                 let name = shown(command, id);
                 Some((format!("{name} other than {value}"), true))
             }
+            Without(id) if count(&[id]) > 0 => Some((shown(command, id), true)),
             Two(ids) if count(ids) < 2 => Some(("a second shape".into(), true)),
             _ => None,
         }

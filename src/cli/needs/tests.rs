@@ -1,10 +1,10 @@
 use super::*;
-use crate::Cli;
+use crate::program::definitions;
+use clap::Arg;
 use clap::error::ErrorKind;
-use clap::{Arg, CommandFactory};
 
 fn commands() -> Vec<Command> {
-    let mut all = Cli::command();
+    let mut all = definitions::<crate::Command>();
     all.build();
     all.get_subcommands().cloned().collect()
 }
@@ -109,6 +109,7 @@ fn a_flag_without_what_it_needs_is_refused_or_noted_by_both_names() {
             // What makes a value's need unmet.
             let other = match need {
                 Flag(ids) | Two(ids) if !ids.iter().any(|id| has(&command, id)) => continue,
+                Without(_) => continue,
                 Value(id, _) | Other(id, _)
                     if !has(&command, id) || command.get_name() == "view" =>
                 {

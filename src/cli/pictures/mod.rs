@@ -16,25 +16,25 @@ use serde_json::json;
 
 use super::failure::Failure;
 use super::film::{self, FilmArgs, FilmFormat};
-use super::output::{self, counted, counted_are, say};
-use super::pattern::filled;
+use super::output::{self, STANDARD, counted, counted_are, say};
+use super::pattern::{filled, is_several};
 use super::report::{Answer, FrameRecord};
 use super::scenes::SceneArgs;
-use super::values::{self, STANDARD};
+use super::values;
 pub(super) use drawn::{Pixels, RenderedPicture};
 pub(super) use part::RunShare;
 
 /// What becomes of pictures, and of what is measured.
 #[derive(Debug, Args)]
 pub(super) struct PictureArgs {
-    /// Draw only part K of N of the pictures
+    /// Divide the pictures into N parts, and draw only part K, from 1 to N
     ///
-    /// They are numbered as in the whole, so that N jobs draw all of them.
+    /// The pictures keep the numbers that they have without --part. N jobs with K from 1 to N therefore draw all of them.
     #[arg(long, value_name = "K/N")]
     part: Option<RunShare>,
-    /// Leave out pictures whose files are there, whatever these show
+    /// Skip pictures whose files exist, without checking what is in the files
     ///
-    /// After an interruption the rest is drawn.
+    /// After an interruption, the same command with this flag draws the missing pictures.
     #[arg(long)]
     skip_existing: bool,
     /// Print the statistics as JSON
@@ -42,14 +42,14 @@ pub(super) struct PictureArgs {
     json: bool,
     /// Print the statistics of each picture as a line of JSON
     ///
-    /// A line is printed as soon as the picture's file is there.
+    /// A line is printed as soon as the file of its picture is written.
     #[arg(long, conflicts_with = "json")]
     json_lines: bool,
-    /// How .png files are compressed, without loss in any case [default: fast]
-    #[arg(long, value_name = "HOW")]
+    /// Compression of .png files; every choice is lossless [default: fast]
+    #[arg(long, value_name = "HOW", value_parser = values::named::<PngCompression>())]
     png: Option<PngCompression>,
     /// Add this command to a file as a job for rara batch, and draw nothing
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = values::one_file())]
     save_job: Option<PathBuf>,
     #[command(flatten)]
     film: FilmArgs,
@@ -146,6 +146,11 @@ impl PictureArgs {
         }
     }
 
+    /// Gives a film so many pictures a second, if there are any and no flag says otherwise.
+    pub(super) fn pace(&mut self, fps: Option<f64>) {
+        self.film.pace(fps);
+    }
+
     /// The place that pictures of these numbers go to. `several` is what makes more than one of them, if anything does.
     pub(super) fn destination<'a>(
         &'a self,
@@ -159,7 +164,16 @@ impl PictureArgs {
             OutputTarget::Nowhere => {}
             OutputTarget::Folder(folder) => output::make_folder(folder)?,
             OutputTarget::Files(pattern) => check_pattern(pattern, numbers, several)?,
-            OutputTarget::Film(kind, file) => self.film.check(*kind, file)?,
+            OutputTarget::Film(kind, file) => {
+                self.film.check(*kind, file)?;
+                if several.is_none() {
+                    output::warn_once(
+                        "note: this is a film of one picture, as nothing moves; --path orbit moves the camera, and rara sweep a \
+                         clip"
+                            .into(),
+                    );
+                }
+            }
         }
         Ok(Destination {
             args: self,
@@ -181,7 +195,7 @@ impl PictureArgs {
                     None => OutputTarget::Files(file),
                 });
             }
-            Err(why) if !is_folder && has_slot(output) => {
+            Err(why) if !is_folder && is_several(output) => {
                 return Err(Failure::Usage(format!("{}: {why}", output.display())));
             }
             _ => {}
@@ -251,14 +265,9 @@ impl PictureArgs {
     }
 }
 
-/// True where a name stands for several.
-fn has_slot(pattern: &Path) -> bool {
-    filled(pattern, 0, "a") != filled(pattern, 1, "b")
-}
-
 /// Fails where several pictures would be one file, or the first one could not be written.
 fn check_pattern(pattern: &Path, numbers: &[usize], several: Option<&str>) -> Result<(), Failure> {
-    if let Some(what) = several.filter(|_| !has_slot(pattern)) {
+    if let Some(what) = several.filter(|_| !is_several(pattern)) {
         let remedy = match pattern == Path::new(STANDARD) {
             true => "name a file with {} where their number goes, or give --format apng or rgba",
             false => {
@@ -268,7 +277,7 @@ fn check_pattern(pattern: &Path, numbers: &[usize], several: Option<&str>) -> Re
         return Err(Failure::Usage(format!("{what} several pictures: {remedy}")));
     }
     // Folders whose names have a slot are made when all names are known.
-    if pattern.parent().is_some_and(has_slot) {
+    if pattern.parent().is_some_and(is_several) {
         return Ok(());
     }
     let first = numbers.first().copied().unwrap_or(0);

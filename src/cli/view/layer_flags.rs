@@ -2,9 +2,10 @@
 
 use rara::clip::Expression;
 
-use super::layers::NamedLayer;
+use rara::scene::layers::LayerClip;
+use rara_view::viewer::NamedLayer;
+
 use super::shots::quoted;
-use crate::scene_file::LayerClip;
 
 /// How a flag, which takes all layers of a name alike, makes what is listed of them into what is shown.
 #[derive(Debug, PartialEq)]
@@ -100,103 +101,4 @@ pub(super) fn note(layers: &[NamedLayer], section: &[Expression]) -> Option<Stri
 }
 
 #[cfg(test)]
-mod tests {
-    use crate::scene_layers::LoadedLayer;
-    use crate::view::action::{Edit, GripAction, Which};
-    use crate::view::cut::ClipEditor;
-    use crate::view::layers::Clips;
-    use crate::view::layers::tests::{camera, layer};
-    use glam::DVec3;
-    use rara::ClipOp;
-
-    fn clips(layers: &[LoadedLayer]) -> Clips {
-        let frame = ClipEditor::new(Vec::new(), ClipOp::And, DVec3::ZERO);
-        Clips::new(frame, layers, DVec3::ZERO)
-    }
-
-    /// The same layer as flags have left it: hidden, or with another clip.
-    fn flagged(mut layer: LoadedLayer, visible: bool, clip: Option<&str>) -> LoadedLayer {
-        layer.state = layer.state.visible(visible);
-        layer.clip = clip.map(|text| crate::scene_file::LayerClip::parse(text).unwrap());
-        layer
-    }
-
-    #[test]
-    fn a_clip_is_said_where_it_is_another_than_the_listed_one() {
-        for listed in [
-            "!plane:1,0,0,0",
-            "whole",
-            "all(sphere:0,0,0,1, plane:1,0,0,0)",
-        ] {
-            let mut clips = clips(&[layer("skin", true, Some(listed))]);
-            assert!(clips.flags().is_empty(), "{listed}");
-            clips.edit(&Edit::Next).unwrap();
-            clips.act(
-                GripAction::Set("sphere:0,0,0,2".parse().unwrap()),
-                &camera(),
-                1.0,
-            );
-            let said = clips.flags();
-            assert!(
-                said[0].contains("sphere:0,0,0,2") && said.len() == 1,
-                "{said:?}"
-            );
-            clips.edit(&Edit::Release).unwrap();
-            assert_eq!(clips.flags(), ["--layer-clip=skin=frame"]);
-        }
-        // What flags have made of a layer is said again.
-        let typed = flagged(
-            layer("skin", true, Some("whole")),
-            false,
-            Some("plane:1,0,0,0"),
-        );
-        assert_eq!(
-            clips(&[typed]).flags(),
-            ["--hide=skin", "--layer-clip=skin=plane:1,0,0,0"]
-        );
-    }
-
-    #[test]
-    fn layers_of_one_name_that_differ_are_left_as_they_are_listed() {
-        let mut clips = clips(&[
-            layer("part", true, Some("plane:1,0,0,0")),
-            layer("part", false, Some("sphere:0,0,0,1")),
-        ]);
-        assert!(clips.flags().is_empty() && clips.note().is_none());
-        clips.show(&Which::Number(2), Some(true)).unwrap();
-        assert_eq!(clips.flags(), ["--unhide=part"]);
-        clips.show(&Which::Number(1), Some(false)).unwrap();
-        assert!(clips.flags().is_empty());
-        let note = clips.note().unwrap();
-        assert!(note.contains("the layers called part,"), "{note}");
-        clips.show(&Which::Number(2), Some(false)).unwrap();
-        assert_eq!(clips.flags(), ["--hide=part"]);
-        assert!(clips.note().is_none());
-        // One of the clips is changed, and then both are the same.
-        clips.edit(&Edit::Next).unwrap();
-        clips.act(GripAction::On(false), &camera(), 1.0);
-        assert_eq!(clips.flags(), ["--hide=part"]);
-        assert!(clips.note().is_some());
-        clips.edit(&Edit::Next).unwrap();
-        clips.act(GripAction::On(false), &camera(), 1.0);
-        assert_eq!(clips.flags(), ["--hide=part", "--layer-clip=part=whole"]);
-        assert!(clips.note().is_none());
-    }
-
-    #[test]
-    fn layers_that_flags_have_made_alike_are_said_as_they_are_listed() {
-        // The list shows one and hides the other, and --unhide has brought that back.
-        let shown = layer("part", true, None);
-        let hidden = flagged(layer("part", false, None), true, None);
-        let mut alike = clips(&[shown, hidden]);
-        assert_eq!(alike.flags(), ["--unhide=part"]);
-        alike
-            .show(&Which::Typed("part".into()), Some(false))
-            .unwrap();
-        assert_eq!(alike.flags(), ["--hide=part"]);
-        // The same of a clip that only the second is listed with.
-        let plain = layer("part", true, None);
-        let freed = flagged(layer("part", true, Some("whole")), true, None);
-        assert_eq!(clips(&[plain, freed]).flags(), ["--layer-clip=part=frame"]);
-    }
-}
+mod tests;

@@ -1,51 +1,34 @@
 //! `rara view`: a window on a scene, with clip shapes to drag through it.
 
-mod action;
-mod app;
 mod camera_flags;
-mod cut;
-mod display;
-mod dropped;
 mod flags;
-mod frames;
-mod grip;
-mod input;
+mod host;
 mod layer_flags;
-mod layers;
-mod loading;
-mod lost;
-mod numbers;
-mod opening;
-mod outlines;
-mod overlay;
-mod scenery;
 mod script;
 mod shots;
-mod stage;
-mod text;
-mod title;
-mod viewpoint;
+mod timings;
 
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use glam::DVec3;
+use rara::scene::Bounds;
+use rara::scene::layers::SceneLayers;
 use rara::{Camera, ClipOp, Scene};
+use rara_view::viewer::{ClipEditor, Connection, KEYS, SceneView, ViewerDesc, Watch};
 
-use self::cut::ClipEditor;
-use self::input::KEYS;
-use self::loading::LoadedWindow;
-use self::scenery::Manner;
+use self::host::Program;
 use self::shots::Shots;
 use super::camera::CameraArgs;
 use super::clip::Regions;
 use super::failure::Failure;
 use super::frame::FrameArgs;
-use super::framing::Visible;
+use super::process::make_drivers_folder;
 use super::scenes::SceneArgs;
 use super::section::{SectionArgs, Sections};
 use super::views::Views;
 use super::{output, values};
+use rara_shots::Visible;
 
 /// Look at a scene in a window, and drag clip shapes through it
 #[derive(Debug, Args)]
@@ -58,20 +41,22 @@ Examples:
   rara view scene.ply --section axial=0.4
   printf 'plane +0.1\\nscreenshot cut.png\\nquit\\n' | rara view scene.ply --script -
 
-rara help view lists the keys, the mouse and the actions of scripts.")]
+rara help view lists what the keys and the mouse do, and the actions of scripts.")]
 #[command(after_long_help = format!("\
 {KEYS}
 
-The window's title says what the last frame took on the device, and its three longest stages; T
-prints all of them. A screenshot is what rara render draws with the same camera, clip and settings;
-beside it goes its camera, for rara render --camera. Neither replaces a file.
+The window's title has the time of the last frame on the device, and of its three longest stages;
+T prints the times of all stages. A screenshot is the picture that rara render draws with the same
+camera, clip and settings. Its camera is saved beside it, for rara render --camera. Neither file
+replaces another one.
 
-Scripts, a line an action, # begins a comment; each is on the screen before the next:
+Scripts have an action on each line, and # begins a comment. The window shows the result of an
+action before the next one begins:
   turn DX,DY             degrees          shape on, off, flip, next
   shift DX,DY            pixels           shape x, y, z        along an axis; a plane across it
   zoom STEPS                              shape +0.1, -0.1     along its normal, world units
-  move X,Y,Z             world units      shape SHAPE          in the held one's place
-  camera orbit, fly, reset, next          plane NX,NY,NZ,D     a plane in its place
+  move X,Y,Z             world units      shape SHAPE          replaces the held shape
+  camera orbit, fly, reset, next          plane NX,NY,NZ,D     replaces the held shape
   camera perspective, orthographic        drag DX,DY           pixels
   clip next              of a dropped file
   mode none, hard, rara, exact            tilt DX,DY           degrees
@@ -83,21 +68,22 @@ Scripts, a line an action, # begins a comment; each is on the screen before the 
   drop FILE                               repeat N ACTION
   quit"))]
 pub(super) struct ViewCommand {
-    /// The screenshots' files, .png or .exr; {} becomes their number
+    /// File names of screenshots, .png or .exr; {} becomes the number
     #[arg(short, long, value_name = "OUT", default_value = "view_{}.png", value_parser = values::picture_file())]
     output: PathBuf,
-    /// Do what a file says, or standard input for -, one action a line
+    /// Run the actions in a file, one per line; - reads standard input
     ///
-    /// The actions are listed below. Without quit the window stays. A step that fails is exit status 1.
+    /// The actions are listed below. The window stays open unless the script closes it by the action quit. If an action
+    /// fails, the exit status is 1.
     #[arg(long, value_name = "FILE")]
     script: Option<PathBuf>,
-    /// Begin without the outlines of the shapes, which the key B brings
+    /// Start without the outlines of clip shapes; the key B shows them
     #[arg(long)]
     no_outline: bool,
-    /// Begin without text over the picture
+    /// Start without text over the picture
     ///
-    /// The hint is left out, and so are the clip's numbers, which the key M brings. What fails is written there all
-    /// the same, and how far the reading of a scene has come.
+    /// The hint and the numbers of the clip are not shown; the key M shows the numbers. Errors and the progress of loading are
+    /// still shown.
     #[arg(long)]
     no_text: bool,
     #[command(flatten)]
@@ -119,17 +105,25 @@ enum Begin {
 }
 
 impl ViewCommand {
-    pub(super) fn run(self) -> Result<(), Failure> {
-        let settings = self.frame.settings.meant()?;
-        let clip = &self.frame.clip;
-        let camera = self.frame.camera.sized_by_default(SIZE);
-        let begin = match self.section.meant(&camera, clip)? {
+    pub(super) fn run(mut self) -> Result<(), Failure> {
+        let mut settings = self.frame.settings.meant();
+        self.frame.camera = self.frame.camera.sized_by_default(SIZE);
+        let save_clip = self.frame.clip.take_save();
+        if let Some(file) = &save_clip {
+            output::check_file(file)?;
+        }
+        let camera = &self.frame.camera;
+        let begin = match self.section.meant(camera, &self.frame.clip)? {
             Some(sections) => Begin::Section(single(sections)?),
-            None => Begin::Views(camera.meant(&self.scenes.places())?, clip.meant()?),
+            None => {
+                let (staged, of_file, _) = self.frame.staged(settings)?;
+                settings = of_file;
+                Begin::Views(camera.meant(&self.scenes.places())?, staged)
+            }
         };
         let shots = shots(&self.output)?;
         let follow = self.script.as_deref() == Some(Path::new("-"));
-        let is_streamed = |place: &PathBuf| place == Path::new(values::STANDARD);
+        let is_streamed = |place: &PathBuf| place == Path::new(output::STANDARD);
         if follow && self.scenes.places().iter().any(is_streamed) {
             return Err(Failure::Usage(
                 "--script -: standard input is the scene's; give the script as a file".into(),
@@ -139,32 +133,29 @@ impl ViewCommand {
             Some(file) if !follow => script::read(file)?,
             _ => Vec::new(),
         };
-        let size = begin.size(&camera)?;
-        let events = display::connect()?;
+        let size = begin.size(camera)?;
+        let display = Connection::open()?;
 
         let (scenes, up) = (self.scenes, camera.up());
-        app::run(
-            events,
-            app::Start {
-                device: self.frame.device.meant(),
-                size,
-                manner: Manner {
-                    sh: settings.precision.sh,
-                    settings,
-                    up: camera.chosen_up(),
-                    outlined: !self.no_outline,
-                    text: !self.no_text,
-                    shots,
-                },
-                load: Box::new(move |watch| {
-                    let mut loaded = scenes.load_watched(watch)?;
-                    begin.regions().settle(&mut loaded)?;
-                    LoadedWindow::new(loaded, begin, up, &scenes.typed())
-                }),
-                script,
-                follow,
-            },
-        )
+        let load = Box::new(move |watch: Watch<'_>| {
+            let mut loaded = scenes.load_watched(&mut |reading| watch(host::progress(reading)))?;
+            begin.regions().settle(&mut loaded)?;
+            let view = begin.view(loaded, up)?;
+            Ok(view.notes(flags::typed(&scenes.typed())))
+        });
+        let mut desc = ViewerDesc::new(load)
+            .device(self.frame.device.meant())
+            .size(size)
+            .settings(settings)
+            .up(camera.chosen_up())
+            .outlined(!self.no_outline)
+            .text(!self.no_text)
+            .script(script);
+        if follow {
+            desc = desc.follow(Some(Box::new(script::follow)));
+        }
+        make_drivers_folder();
+        Ok(display.run(desc, Program { shots, save_clip })?)
     }
 }
 
@@ -182,7 +173,7 @@ impl Begin {
                     .map(|view| (view.camera.width, view.camera.height));
                 first.ok_or_else(|| Failure::Usage("--cameras: the file has no camera".into()))
             }
-            Self::Views(Views::Framed(framed), _) => Ok(framed.size),
+            Self::Views(Views::Framed(framed), _) => Ok(framed.framing.size),
             _ => Ok(camera.chosen_size()),
         }
     }
@@ -193,6 +184,15 @@ impl Begin {
             Self::Views(_, regions) => regions,
             Self::Section(sections) => sections.regions(),
         }
+    }
+
+    /// A scene as it is looked at first.
+    fn view(self, loaded: SceneLayers, up: Option<DVec3>) -> Result<SceneView, Failure> {
+        let scene = loaded.scene();
+        let visible = Visible::of(&scene);
+        let middle = Bounds::of(&scene).centre();
+        let (views, frame) = self.cameras((&scene, &visible), up, middle)?;
+        Ok(SceneView::new(loaded, &visible, views, frame))
     }
 
     /// The cameras, each with its up direction, and the clip, once the scene is known.
@@ -208,9 +208,7 @@ impl Begin {
             Self::Views(views, regions) => {
                 views.note().into_iter().for_each(output::say);
                 let up = views.up().or(up);
-                let views = super::framing::views_of(views, visible)?
-                    .into_iter()
-                    .map(|view| view.camera);
+                let views = views.showing(visible)?.into_iter().map(|view| view.camera);
                 let views = views.map(|camera| (camera, up.unwrap_or(own_up(&camera))));
                 let cut = ClipEditor::new(regions.expressions(scene)?, regions.op(), centre);
                 Ok((views.collect(), cut))
@@ -249,13 +247,4 @@ fn shots(pattern: &Path) -> Result<Shots, Failure> {
     })?;
     output::check_file(Path::new(&text.replace("{}", "000")))?;
     Ok(Shots::new(text.to_owned()))
-}
-
-/// A short name for the title.
-fn name(scene: &Scene<'_>) -> String {
-    let first = scene.layers().first().map_or("", |layer| layer.name());
-    match scene.layers().len() {
-        0 | 1 => first.to_owned(),
-        more => format!("{first} and {} more", more - 1),
-    }
 }

@@ -6,8 +6,10 @@ use std::path::Path;
 
 use rara::Error;
 
-use super::action::Action;
+use rara_view::viewer::{self, Action};
+
 use crate::failure::Failure;
+use crate::values::picture_path;
 
 /// A line's actions.
 type Actions = Result<Vec<Action>, Failure>;
@@ -19,14 +21,14 @@ pub(super) fn read(file: &Path) -> Actions {
 }
 
 /// Hands over the actions of standard input as its lines come, until it ends or `take` wants no more.
-pub(super) fn follow(mut take: impl FnMut(Actions) -> bool) {
+pub(super) fn follow(take: &mut dyn FnMut(Result<Vec<Action>, viewer::Failure>) -> bool) {
     for (number, line) in (1..).zip(io::stdin().lock().lines()) {
         let actions = match line {
             Ok(line) => of_line(&line, "standard input", number),
             Err(error) => Err(Error::io("standard input")(error).into()),
         };
         let failed = actions.is_err();
-        if !take(actions) || failed {
+        if !take(actions.map_err(Into::into)) || failed {
             return;
         }
     }
@@ -51,46 +53,25 @@ fn of_line(line: &str, name: &str, number: usize) -> Actions {
     }
     let wrong = |what: String| Failure::Usage(format!("--script: {name}, line {number}: {what}"));
     let Some(rest) = line.strip_prefix("repeat ") else {
-        return Ok(vec![line.parse().map_err(wrong)?]);
+        return Ok(vec![action(line).map_err(wrong)?]);
     };
-    let (times, action) = rest.trim().split_once(' ').unwrap_or((rest, ""));
+    let (times, of) = rest.trim().split_once(' ').unwrap_or((rest, ""));
     let times = times
         .parse()
         .ok()
         .filter(|times| (1..=MOST).contains(times));
     let times = times.ok_or_else(|| wrong(format!("repeat takes 1 to {MOST} and an action")))?;
-    let action: Action = action.parse().map_err(wrong)?;
-    Ok(vec![action; times as usize])
+    Ok(vec![action(of).map_err(wrong)?; times as usize])
+}
+
+/// An action, whose screenshot has a name that a picture can have.
+fn action(text: &str) -> Result<Action, String> {
+    let action = text.parse()?;
+    if let Action::Screenshot(Some(file)) = &action {
+        picture_path(file.into())?;
+    }
+    Ok(action)
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use glam::DVec2;
-
-    #[test]
-    fn comments_empty_lines_and_repetitions() {
-        let text = "# what this is for\n\nrepeat 3 turn 2,0 # a bit\n  quit\n";
-        let turn = Action::Turn(DVec2::new(2.0, 0.0));
-        assert_eq!(
-            parse(text, "s").unwrap(),
-            [turn.clone(), turn.clone(), turn, Action::Quit]
-        );
-        assert_eq!(parse("", "s").unwrap(), []);
-    }
-
-    #[test]
-    fn a_wrong_line_is_named() {
-        for text in [
-            "quit\nleap",
-            "quit\nrepeat 0 quit",
-            "quit\nrepeat 2",
-            "quit\nrepeat x quit",
-        ] {
-            let error = parse(text, "smoke.txt").expect_err(text);
-            assert!(matches!(error, Failure::Usage(_)));
-            let error = error.to_string();
-            assert!(error.contains("smoke.txt, line 2: "), "{error}");
-        }
-    }
-}
+mod tests;

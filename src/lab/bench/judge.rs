@@ -2,7 +2,7 @@
 
 use std::cell::RefCell;
 
-use crate::measure::{self, Popping, Region};
+use crate::measure::{self, Pixels, Popping};
 use glam::DVec3;
 use rara::scene::extent_along;
 use rara::{
@@ -48,7 +48,7 @@ pub(crate) struct Judge<'a> {
     /// The clip in each step of the sweep; all measures but popping use the first.
     clips: Vec<Clip>,
     truths: Vec<Picture>,
-    band: Region,
+    band: Pixels,
     /// Pictures in double precision that have been drawn, by the settings that they depend on.
     twins: RefCell<Vec<(Settings, Picture)>>,
 }
@@ -62,8 +62,8 @@ pub(crate) fn truth_settings(look: &Settings) -> Settings {
 }
 
 /// The region in which the way of cutting makes a difference: the cut by centres and the true one differ there or nearby.
-pub(crate) fn band(by_centres: &Picture, truth: &Picture) -> Result<Region> {
-    Ok(Region::where_different(by_centres, truth, 1.0 / 255.0)?.dilated(BAND))
+pub(crate) fn band(by_centres: &Picture, truth: &Picture) -> Result<Pixels> {
+    Ok(Pixels::where_different(by_centres, truth, 1.0 / 255.0)?.dilated(BAND))
 }
 
 impl<'a> Judge<'a> {

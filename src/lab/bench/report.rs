@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::clock::Times;
 use super::judge::Measures;
 use super::{shapes, ways};
-use crate::charts::{Axis, Scatter, Series};
+use crate::charts::{Axis, Plot, Series};
 
 #[derive(Debug, Serialize)]
 pub struct BenchReport {
@@ -44,21 +44,26 @@ pub(crate) struct ChoiceRow {
 
 impl BenchReport {
     /// Cost against error, with the front of what nothing beats.
-    pub fn chart(&self) -> Scatter {
+    pub fn chart(&self) -> Plot {
         let of = |kind: ChoiceKind| {
             let rows = self.rows.iter();
             let rows = rows
                 .filter(move |row| row.name != "none" && ChoiceKind::from_name(row.name) == kind);
-            rows.map(|row| (row.times.cost, row.measures.l1, row.name))
+            let points = rows.map(|row| (row.times.cost, row.measures.l1, row.name.into()));
+            Series {
+                name: kind.name().into(),
+                points: points.collect(),
+            }
         };
-        let kinds = [ChoiceKind::Way, ChoiceKind::Law, ChoiceKind::Precision];
-        let series = kinds.map(|kind| Series::labelled(kind.name(), of(kind)));
         let front = self.rows.iter().filter(|row| row.undominated);
-        Scatter {
+        Plot {
             title: format!("{}: run time against error", self.scene),
             x: Axis::log("Cost (ms per frame)"),
             y: Axis::log("L1 against the truth (of 255)"),
-            series: series.into(),
+            series: [ChoiceKind::Way, ChoiceKind::Law, ChoiceKind::Precision]
+                .map(of)
+                .into(),
+            joined: false,
             front: front.map(|row| [row.times.cost, row.measures.l1]).collect(),
         }
     }

@@ -1,26 +1,23 @@
 //! Axes: what stands beside them, how values lie along them, and where their marks are.
 
+use std::error::Error;
 use std::ops::Range;
 
 use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
+use plotters::coord::types::RangedCoordf64;
+use plotters::prelude::*;
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Scale {
-    #[default]
-    Linear,
-    /// Values lie by their logarithms. Zeros have a band of their own before a break in the axis; negative values are missing.
-    Log,
-}
-
-/// The largest magnitude on an axis, so that lengths and steps are finite too.
-const LARGEST: f64 = 1e300;
+use super::canvas::{
+    self, Area, FAINT, GRID, INK, MARGIN, MEDIUM, PAPER, SMALL, WIDTH, style, width_of,
+};
 
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axis {
     /// What it measures, and in which unit: "Time (ms)".
     pub label: String,
-    pub scale: Scale,
-    /// The ends of the axis; `None` is as far as the values.
+    /// Values lie by their logarithms. Zeros lie at a mark of their own before a break; negative values are missing.
+    pub is_log: bool,
+    /// The ends of the axis, on which values beyond them lie; `None` is as far as the values.
     pub range: Option<[f64; 2]>,
 }
 
@@ -28,14 +25,14 @@ impl Axis {
     pub fn linear(label: impl Into<String>) -> Self {
         Self {
             label: label.into(),
-            scale: Scale::Linear,
+            is_log: false,
             range: None,
         }
     }
 
     pub fn log(label: impl Into<String>) -> Self {
         Self {
-            scale: Scale::Log,
+            is_log: true,
             ..Self::linear(label)
         }
     }
@@ -47,177 +44,120 @@ impl Axis {
         }
     }
 
-    pub(super) fn takes(&self, value: f64) -> bool {
-        value.abs() <= LARGEST && (self.scale == Scale::Linear || value >= 0.0)
+    /// Where a value lies: its logarithm or itself, unless lengths of axes with it could be infinite.
+    fn place(&self, value: f64) -> Option<f64> {
+        let place = if self.is_log { value.log10() } else { value };
+        Some(place).filter(|place| place.abs() <= 1e300)
     }
 
-    /// The axis with the places of these values; those without a place are ignored.
-    pub(super) fn span(&self, values: impl Iterator<Item = f64>) -> Span {
-        let values: Vec<f64> = values.filter(|&v| self.takes(v)).collect();
-        let is_log = self.scale == Scale::Log;
-        let zeros = is_log && values.contains(&0.0);
-        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-        let ends = self
-            .range
-            .into_iter()
-            .flatten()
-            .filter(|v| v.abs() <= LARGEST);
-        let placed: Vec<f64> = if self.range.is_some() {
-            ends.collect()
-        } else {
-            values
-        };
-        for value in placed.into_iter().filter(|&v| !is_log || v > 0.0) {
-            (low, high) = (low.min(value), high.max(value));
-        }
-        if low > high {
-            (low, high) = if is_log { (0.1, 1.0) } else { (0.0, 1.0) };
-        }
-        let is_fixed = self.range.is_some() && low < high;
-        if !is_log && low == high {
-            high = low + low.abs().max(1.0);
-        }
-        let step = step(high - low);
-        let (low, high) = match (is_log, is_fixed) {
-            (true, true) => (low.log10(), high.log10()),
-            (true, false) => {
-                let (low, high) = (low.log10(), high.log10());
-                let margin = (0.06 * (high - low)).max(0.1);
-                (low - margin, high + margin)
+    /// The axis as these values need it.
+    pub(super) fn span(&self, values: impl IntoIterator<Item = f64>) -> Span {
+        let values: Vec<f64> = values.into_iter().collect();
+        let has_zeros = self.is_log && values.contains(&0.0);
+        let is_fixed = self.range.is_some();
+        let shown = self.range.map_or(values, Vec::from);
+        let places: Vec<f64> = shown.into_iter().filter_map(|v| self.place(v)).collect();
+        let low = places.iter().copied().reduce(f64::min).unwrap_or(0.0);
+        let high = places.iter().copied().reduce(f64::max).unwrap_or(1.0);
+        let margin = match high - low {
+            none if none <= 1e-9 * high.abs().max(low.abs()) => {
+                let is_relative = !self.is_log && low.abs() > 1e-9;
+                if is_relative { low.abs() / 2.0 } else { 0.5 }
             }
-            (false, true) => (low, high),
-            // A whole number of steps, so that a mark is at both ends.
-            (false, false) => ((low / step).floor() * step, (high / step).ceil() * step),
+            length if self.is_log && !is_fixed => (0.06 * length).max(0.1),
+            _ => 0.0,
         };
-        Span {
-            low,
-            high,
-            step,
-            is_log,
-            zeros,
+        let (mut low, mut high) = (low - margin, high + margin);
+        let steps = |low: f64, high: f64| RangedCoordf64::from(low..high).key_points(9);
+        let marks = if self.is_log {
+            powers(low, high)
+        } else {
+            // To a whole number of steps, so that a mark is at both ends.
+            if let (false, [first, second, ..]) = (is_fixed, &steps(low, high)[..]) {
+                let step = second - first;
+                (low, high) = ((low / step).floor() * step, (high / step).ceil() * step);
+            }
+            steps(low, high)
+        };
+        let value = |mark: f64| if self.is_log { 10_f64.powf(mark) } else { mark };
+        let marks = marks.into_iter().map(|mark| (mark, number(value(mark))));
+        let mut span = Span {
+            axis: self.clone(),
+            ends: [low, high],
+            zeros: None,
+            marks: marks.collect(),
+        };
+        if has_zeros {
+            let step = 0.06 * (high - low);
+            span.ends[0] = low - 2.0 * step;
+            span.zeros = Some(low - step);
+            span.marks.push((low - step, number(0.0)));
         }
+        span
     }
 }
 
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Span {
-    /// The ends, of logarithms as such.
-    low: f64,
-    high: f64,
-    /// The distance between marks of an axis that is linear.
-    step: f64,
-    is_log: bool,
-    /// A band for zeros comes first.
-    pub(super) zeros: bool,
+/// The logarithms of powers of ten, and of multiples of them where there are few.
+fn powers(low: f64, high: f64) -> Vec<f64> {
+    let parts: &[f64] = match high - low {
+        few if few < 0.7 => &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0],
+        few if few < 3.0 => &[1.0, 2.0, 5.0],
+        _ => &[1.0],
+    };
+    let every = ((high - low) / 8.0).ceil().max(1.0) as usize;
+    let powers = (low.floor() as i32..=high.ceil() as i32).step_by(every);
+    let marks = powers.flat_map(|power| parts.iter().map(move |p| f64::from(power) + p.log10()));
+    let within = low - 1e-9..=high + 1e-9;
+    marks.filter(|mark| within.contains(mark)).collect()
 }
 
-/// The places of zeros on an axis with a band for them, of the break, and of the first of the other values; shares of its
-/// length.
-pub(super) const ZERO: f64 = 0.035;
-pub(super) const BREAK: f64 = 0.075;
-const AFTER_BREAK: f64 = 0.1;
+/// A number with at most six digits, and with a power of ten where it would be long.
+pub(super) fn number(value: f64) -> String {
+    let short: f64 = format!("{value:.5e}").parse().unwrap_or(value);
+    let text = match short.abs() {
+        0.0 => "0".into(), // also -0
+        1e-4..1e6 => short.to_string(),
+        _ => format!("{short:e}"),
+    };
+    text.replace('-', "\u{2212}")
+}
+
+/// An axis from its lowest place to its highest one.
+#[derive(Debug, Clone)]
+pub(super) struct Span {
+    axis: Axis,
+    pub(super) ends: [f64; 2],
+    /// The place of zeros on an axis of logarithms that needs one.
+    zeros: Option<f64>,
+    /// Places and what stands at them.
+    pub(super) marks: Vec<(f64, String)>,
+}
 
 impl Span {
-    /// The place of a value: 0 is the beginning of the axis and 1 its end.
-    pub(super) fn share(&self, value: f64) -> f64 {
-        if self.zeros && value <= 0.0 {
-            return ZERO;
-        }
-        let value = if self.is_log { value.log10() } else { value };
-        let share = (value - self.low) / (self.high - self.low);
-        if self.zeros {
-            AFTER_BREAK + (1.0 - AFTER_BREAK) * share
-        } else {
-            share
+    /// An axis of categories, whose middles are at 0.5, 1.5 and so on.
+    pub(super) fn of_categories<'a>(label: &str, names: impl Iterator<Item = &'a String>) -> Self {
+        let middles = (0..).map(|number| f64::from(number) + 0.5);
+        let marks: Vec<_> = middles.zip(names.cloned()).collect();
+        Self {
+            axis: Axis::linear(label),
+            ends: [0.0, marks.len().max(1) as f64],
+            zeros: None,
+            marks,
         }
     }
 
-    pub(super) fn marks(&self) -> Vec<f64> {
-        let mut marks = if self.is_log {
-            self.powers()
-        } else {
-            let step = self.step;
-            let first = (self.low / step - 1e-9).ceil();
-            let last = (self.high / step + 1e-9).floor();
-            // Added up in whole steps; a power of ten is a quotient where it is below 1, so that 3 of them are 0.3.
-            let mark = |i: f64| {
-                if step < 1.0 {
-                    i / (1.0 / step)
-                } else {
-                    i * step
-                }
-            };
-            (0..=(last - first) as i32)
-                .map(|i| mark(first + f64::from(i)))
-                .collect()
-        };
-        if self.zeros {
-            marks.insert(0, 0.0);
+    /// The place of a value; `None` where it is missing.
+    pub(super) fn at(&self, value: f64) -> Option<f64> {
+        if value == 0.0 && self.zeros.is_some() {
+            return self.zeros;
         }
-        marks
+        let [low, high] = self.ends;
+        Some(self.axis.place(value)?.clamp(low, high))
     }
 
-    /// Powers of ten, and multiples of them where there are few.
-    fn powers(&self) -> Vec<f64> {
-        let decades = self.high - self.low;
-        let within = |v: &f64| (self.low - 1e-9..=self.high + 1e-9).contains(&v.log10());
-        let (first, last) = (self.low.floor() as i32, self.high.ceil() as i32);
-        let every = (decades / 8.0).ceil().max(1.0) as usize;
-        let parts: &[f64] = match decades {
-            few if few < 0.7 => &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0],
-            few if few < 3.0 => &[1.0, 2.0, 5.0],
-            _ => &[1.0],
-        };
-        let powers = (first..=last).step_by(every).map(power_of_ten);
-        let marks = powers.flat_map(|power| parts.iter().map(move |part| part * power));
-        marks.filter(within).collect()
-    }
-}
-
-/// 10 to this power, as exactly as its digits.
-fn power_of_ten(exponent: i32) -> f64 {
-    format!("1e{exponent}").parse().unwrap_or(f64::INFINITY)
-}
-
-/// A step of 1, 2 or 5 times a power of ten that goes three to seven times into a length.
-fn step(length: f64) -> f64 {
-    let power = power_of_ten((length / 5.0).log10().floor() as i32);
-    let steps = [1.0, 2.0, 5.0, 10.0].map(|part| part * power);
-    let few = |step: &f64| length / step <= 7.5;
-    steps.into_iter().find(few).unwrap_or(10.0 * power)
-}
-
-/// A number as an axis has it: short, and powers of ten where it would be long.
-pub(super) fn number(value: f64) -> String {
-    if value == 0.0 {
-        return "0".into();
-    }
-    let exponent = value.abs().log10().floor() as i32;
-    if (-3..5).contains(&exponent) {
-        let digits = (3 - exponent).max(0) as usize;
-        let text = format!("{value:.digits$}");
-        let text = if text.contains('.') {
-            text.trim_end_matches('0').trim_end_matches('.')
-        } else {
-            &text
-        };
-        return text.replace('-', "\u{2212}");
-    }
-    let raised: String = exponent.to_string().chars().map(raised).collect();
-    let factor = number(value / power_of_ten(exponent));
-    match factor.as_str() {
-        "1" => format!("10{raised}"),
-        factor => format!("{factor}·10{raised}"),
-    }
-}
-
-fn raised(digit: char) -> char {
-    match digit {
-        '-' => '⁻',
-        '1' => '¹',
-        '2' => '²',
-        '3' => '³',
-        digit => char::from_u32('⁰' as u32 + digit.to_digit(10).unwrap_or(0)).unwrap_or('⁰'),
+    /// The place between zeros and everything else.
+    pub(super) fn breaks(&self) -> Option<f64> {
+        Some(2.0 * self.zeros? - self.ends[0])
     }
 }
 
@@ -225,98 +165,78 @@ impl Ranged for Span {
     type FormatOption = NoDefaultFormatting;
     type ValueType = f64;
 
-    fn map(&self, value: &f64, (from, to): (i32, i32)) -> i32 {
-        let place = f64::from(from) + self.share(*value) * f64::from(to - from);
-        place.round() as i32
+    fn map(&self, place: &f64, pixels: (i32, i32)) -> i32 {
+        RangedCoordf64::from(self.range()).map(place, pixels)
     }
 
     fn key_points<Hint: KeyPointHint>(&self, hint: Hint) -> Vec<f64> {
-        if hint.weight().allow_light_points() || hint.max_num_points() == 0 {
-            return Vec::new();
-        }
-        self.marks()
+        let marks = self.marks.iter().map(|mark| mark.0);
+        let is_bold = !hint.weight().allow_light_points();
+        marks.filter(|_| is_bold).collect()
     }
 
     fn range(&self) -> Range<f64> {
-        if self.is_log {
-            10_f64.powf(self.low)..10_f64.powf(self.high)
-        } else {
-            self.low..self.high
-        }
+        self.ends[0]..self.ends[1]
     }
 }
 
 impl ValueFormatter<f64> for Span {
-    fn format_ext(&self, value: &f64) -> String {
-        number(*value)
+    fn format_ext(&self, place: &f64) -> String {
+        let mark = self.marks.iter().find(|mark| mark.0 == *place);
+        mark.map_or(String::new(), |mark| mark.1.clone())
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+pub(super) type Chart<'a> = ChartContext<'a, SVGBackend<'a>, Cartesian2d<Span, Span>>;
 
-    fn marks(axis: &Axis, values: &[f64]) -> Vec<String> {
-        let span = axis.span(values.iter().copied());
-        span.marks().into_iter().map(number).collect()
-    }
-
-    #[test]
-    fn marks_are_round_and_include_both_ends() {
-        let linear = Axis::linear("");
-        assert_eq!(
-            marks(&linear, &[0.0, 0.6]),
-            ["0", "0.1", "0.2", "0.3", "0.4", "0.5", "0.6"]
-        );
-        assert_eq!(
-            marks(&linear, &[-7.0, 7.0]),
-            ["−8", "−6", "−4", "−2", "0", "2", "4", "6", "8"]
-        );
-        assert_eq!(
-            marks(&linear, &[3.0]),
-            ["3", "3.5", "4", "4.5", "5", "5.5", "6"]
-        );
-        assert_eq!(marks(&linear, &[]).first().map(String::as_str), Some("0"));
-        let fixed = linear.between(0.0, 5e6);
-        assert_eq!(
-            marks(&fixed, &[1.0]),
-            ["0", "10⁶", "2·10⁶", "3·10⁶", "4·10⁶", "5·10⁶"]
-        );
-    }
-
-    #[test]
-    fn logarithms_have_decades_or_twice_and_five_times_them() {
-        let log = Axis::log("");
-        assert_eq!(marks(&log, &[1.0, 10.0]), ["1", "2", "5", "10"]);
-        assert_eq!(
-            marks(&log, &[1e-6, 1.0]),
-            ["10⁻⁶", "10⁻⁵", "10⁻⁴", "0.001", "0.01", "0.1", "1"]
-        );
-        assert!(marks(&log, &[1e-30, 1e30]).len() <= 10);
-        assert_eq!(marks(&log, &[0.0, 1.0, 10.0])[0], "0");
-    }
-
-    #[test]
-    fn zeros_lie_before_the_break_and_everything_else_after_it() {
-        let span = Axis::log("").span([0.0, 0.01, 1.0].into_iter());
-        assert_eq!(span.share(0.0), ZERO);
-        assert!(span.share(0.01) > AFTER_BREAK && span.share(1.0) < 1.0);
-        let plain = Axis::log("").between(0.01, 1.0).span([0.5].into_iter());
-        assert!((plain.share(0.1) - 0.5).abs() < 1e-12);
-    }
-
-    #[test]
-    fn values_that_are_no_numbers_or_extreme_break_nothing() {
-        for axis in [Axis::linear(""), Axis::log("")] {
-            for values in [
-                &[f64::NAN, f64::INFINITY, -1.0][..],
-                &[f64::MIN_POSITIVE, f64::MAX],
-                &[5e-324],
-                &[-f64::MAX, f64::MAX],
-            ] {
-                let span = axis.span(values.iter().copied());
-                assert!(span.marks().len() < 1000, "{values:?}");
-            }
+/// Draws two axes in these rows of a canvas and returns what takes places along them.
+pub(super) fn axes<'a>(
+    canvas: &Area<'a>,
+    rows: Range<i32>,
+    x: &Span,
+    y: &Span,
+) -> Result<Chart<'a>, Box<dyn Error>> {
+    let height = canvas.dim_in_pixel().1 as i32;
+    let names = y.marks.iter().map(|mark| width_of(&mark.1, SMALL));
+    let left = 46 + names.max().unwrap_or(0).min(WIDTH / 3);
+    let column = (WIDTH - left - 3 * MARGIN) / x.marks.len().max(1) as i32;
+    let lines = |text: &str| canvas::wrapped(text, column, SMALL);
+    let most = x.marks.iter().map(|mark| lines(&mark.1).len()).max();
+    let mut chart = ChartBuilder::on(canvas)
+        .margin(MARGIN)
+        .margin_right(2 * MARGIN)
+        .margin_top(rows.start)
+        .margin_bottom(height - rows.end)
+        .x_label_area_size(34 + 15 * most.unwrap_or(0) as i32)
+        .y_label_area_size(left)
+        .build_cartesian_2d(x.clone(), y.clone())?;
+    // The first lines; plotters writes no others.
+    chart
+        .configure_mesh()
+        .axis_style(FAINT)
+        .bold_line_style(GRID)
+        .label_style(style(SMALL, INK))
+        .axis_desc_style(style(MEDIUM, INK))
+        .x_desc(&x.axis.label)
+        .y_desc(&y.axis.label)
+        .x_label_formatter(&|place| lines(&x.format_ext(place))[0].clone())
+        .draw()?;
+    for (place, text) in &x.marks {
+        let (x, y) = chart.backend_coord(&(*place, y.ends[0]));
+        for (line, text) in (0..).zip(lines(text)).skip(1) {
+            canvas::write(canvas, &text, (x, y + 17 + 15 * line), canvas::MIDDLE, INK)?;
         }
     }
+    // Breaks go a little beyond the lines of the axes that they are in.
+    let breaks = [
+        (x.breaks().map(|at| y.ends.map(|end| (at, end))), (0, 6)),
+        (y.breaks().map(|at| x.ends.map(|end| (end, at))), (-6, 0)),
+    ];
+    for (ends, beyond) in breaks {
+        let Some(ends) = ends else { continue };
+        let [from, to] = ends.map(|end| chart.backend_coord(&end));
+        let path = vec![(from.0 + beyond.0, from.1 + beyond.1), to];
+        canvas.draw(&PathElement::new(path, PAPER.stroke_width(7)))?;
+    }
+    Ok(chart)
 }

@@ -1,150 +1,117 @@
-//! Two axes with their marks and what they measure, and where values lie between them.
-
-use std::error::Error;
-
 use plotters::prelude::*;
+use plotters::style::text_anchor::HPos;
 
-use super::axis::{BREAK, Span};
-use super::canvas::{self, Anchor, Area, DrawResult, MEDIUM, SMALL, style};
-use super::colours::{FAINT, GRID, INK, PAPER};
-use super::{Axis, Point};
+use super::Axis;
+use super::axis::axes;
+use super::canvas::{self, END, FAINT, MIDDLE, SMALL, START, series, width_of};
 
-/// The space for the marks and the description of the axis up.
-const LEFT: u32 = 76;
-/// The space for those of the axis across.
-const BELOW: u32 = 48;
-
-pub(super) struct Plot<'a> {
-    /// The rectangle; pixels are counted from its top left. What is drawn beyond it is moved to its edges.
-    pub(super) area: Area<'a>,
-    /// The rectangle and what is around it.
-    outer: Area<'a>,
-    /// The place of the rectangle in it.
-    offset: (i32, i32),
-    x: Span,
-    y: Span,
+#[derive(Debug, Clone, PartialEq)]
+pub struct Series {
+    pub name: String,
+    /// Across, up, and what stands beside the point; nothing where it is empty.
+    pub points: Vec<(f64, f64, String)>,
 }
 
-impl<'a> Plot<'a> {
-    /// The plot of two measured axes with these points on it.
-    pub(super) fn measured<'p>(
-        area: &Area<'a>,
-        (x, y): (&Axis, &Axis),
-        points: impl Iterator<Item = &'p Point> + Clone,
-    ) -> Result<Self, Box<dyn Error>> {
-        let points = points.filter(|p| x.takes(p.x) && y.takes(p.y));
-        let spans = (
-            x.span(points.clone().map(|p| p.x)),
-            y.span(points.map(|p| p.y)),
-        );
-        Self::new(area, (&x.label, spans.0), (&y.label, spans.1), true)
-    }
+/// Points of series, each with a name beside it where it has one.
+#[derive(Debug, Clone)]
+pub struct Plot {
+    pub title: String,
+    pub x: Axis,
+    pub y: Axis,
+    pub series: Vec<Series>,
+    /// True where lines join the points of a series; they are broken where a value is missing.
+    pub joined: bool,
+    /// Points that a stepped line joins from left to right, such as those that none is better than; none without them.
+    pub front: Vec<[f64; 2]>,
+}
 
-    /// The plot of categories, whose middles are at 0.5, 1.5 and so on, and a measured axis up.
-    pub(super) fn of_categories(
-        area: &Area<'a>,
-        names: &[&str],
-        label: &str,
-        y: (&Axis, Span),
-    ) -> Result<Self, Box<dyn Error>> {
-        let count = names.len().max(1) as f64;
-        let x = Axis::linear("").between(0.0, count).span([].into_iter());
-        let plot = Self::new(area, (label, x), (&y.0.label, y.1), false)?;
-        let (width, height) = plot.area.dim_in_pixel();
-        let wide = width as i32 / names.len().max(1) as i32;
-        for (number, name) in names.iter().enumerate() {
-            let at = plot.outside((plot.across(number as f64 + 0.5), height as i32 + 22));
-            canvas::write_wrapped(&plot.outer, name, at, Anchor::Middle, wide - 8)?;
-        }
-        Ok(plot)
-    }
+impl Plot {
+    pub fn svg(&self) -> String {
+        let names = self.series.iter().map(|series| &series.name);
+        canvas::chart(&self.title, names, 500, |canvas, top| {
+            let points = || self.series.iter().flat_map(|series| &series.points);
+            let x = self.x.span(points().map(|point| point.0));
+            let y = self.y.span(points().map(|point| point.1));
+            let chart = axes(canvas, top..484, &x, &y)?;
+            let at = |a: f64, b: f64| Some(chart.backend_coord(&(x.at(a)?, y.at(b)?)));
+            let (across, down) = chart.plotting_area().get_pixel_range();
+            let mut labels = Labels {
+                taken: Vec::new(),
+                room: [across.start, down.start, across.end, down.end],
+            };
 
-    fn new(
-        area: &Area<'a>,
-        x: (&str, Span),
-        y: (&str, Span),
-        is_measured: bool,
-    ) -> Result<Self, Box<dyn Error>> {
-        let below = if is_measured { BELOW } else { BELOW + 24 };
-        let mut chart = ChartBuilder::on(area)
-            .x_label_area_size(below)
-            .y_label_area_size(LEFT)
-            .margin_right(16)
-            .margin_top(8)
-            .build_cartesian_2d(x.1, y.1)?;
-        let mut mesh = chart.configure_mesh();
-        mesh.axis_style(FAINT)
-            .bold_line_style(GRID)
-            .max_light_lines(0)
-            .label_style(style(SMALL, INK))
-            .axis_desc_style(style(MEDIUM, INK))
-            .x_desc(x.0)
-            .y_desc(y.0);
-        if !is_measured {
-            mesh.disable_x_mesh().x_labels(0);
-        }
-        mesh.draw()?;
-        let inner = chart.plotting_area().strip_coord_spec();
-        let [base, outer] = [&inner, area].map(|area| area.get_base_pixel());
-        let plot = Self {
-            offset: (base.0 - outer.0, base.1 - outer.1),
-            area: inner,
-            outer: area.clone(),
-            x: x.1,
-            y: y.1,
+            let mut front: Vec<_> = self.front.iter().filter_map(|p| at(p[0], p[1])).collect();
+            front.sort_unstable();
+            let corners = front.windows(2).flat_map(|p| [p[0], (p[1].0, p[0].1)]);
+            let steps: Vec<_> = corners.chain(front.last().copied()).collect();
+            labels.taken.extend(steps.windows(2).map(|ends| {
+                let [from, to] = [ends[0], ends[1]];
+                [from.0, from.1.min(to.1), to.0 + 1, from.1.max(to.1) + 1]
+            }));
+            canvas.draw(&PathElement::new(steps, FAINT))?;
+
+            for (number, line) in self.series.iter().enumerate() {
+                let places: Vec<_> = line.points.iter().map(|p| at(p.0, p.1)).collect();
+                for run in places.split(Option::is_none).filter(|_| self.joined) {
+                    let path: Vec<_> = run.iter().copied().flatten().collect();
+                    canvas.draw(&PathElement::new(path, series(number).stroke_width(2)))?;
+                }
+                for place in places.into_iter().flatten() {
+                    labels.taken.push(around(place, 6, 6));
+                    canvas::mark(canvas, number, place)?;
+                }
+            }
+            for (number, line) in self.series.iter().enumerate() {
+                let colour = canvas::darker(series(number));
+                for (x, y, label) in line.points.iter().filter(|p| !p.2.is_empty()) {
+                    if let Some(place) = at(*x, *y) {
+                        let (place, anchor) = labels.place(label, place);
+                        canvas::write(canvas, label, place, anchor, colour)?;
+                    }
+                }
+            }
+            Ok(())
+        })
+    }
+}
+
+/// Left, top, right and bottom.
+type Bounds = [i32; 4];
+
+fn around((x, y): (i32, i32), wide: i32, high: i32) -> Bounds {
+    [x - wide, y - high, x + wide, y + high]
+}
+
+fn shared(a: Bounds, b: Bounds) -> i32 {
+    let across = a[2].min(b[2]) - a[0].max(b[0]);
+    across.max(0) * (a[3].min(b[3]) - a[1].max(b[1])).max(0)
+}
+
+/// The places of labels, so that they hide neither points nor each other.
+pub(super) struct Labels {
+    /// What must not be hidden.
+    pub(super) taken: Vec<Bounds>,
+    /// Where labels may be.
+    pub(super) room: Bounds,
+}
+
+impl Labels {
+    /// The place of a point's label: the first one around it that is free, or where it hides least.
+    pub(super) fn place(&mut self, label: &str, (x, y): (i32, i32)) -> ((i32, i32), HPos) {
+        let half = width_of(label, SMALL) / 2;
+        let beside = [0, -12, 12, -24, 24].into_iter();
+        let beside = beside.flat_map(|dy| [(10, dy, START), (-10, dy, END)]);
+        let places = beside.chain([-16, 16, -30, 30].map(|dy| (0, dy, MIDDLE)));
+        let bounds =
+            |(dx, dy, _): (i32, i32, HPos)| around((x + dx + half * dx.signum(), y + dy), half, 8);
+        let hidden = |place: &(i32, i32, HPos)| {
+            let bounds = bounds(*place);
+            let outside = 32 * half - shared(bounds, self.room);
+            let hidden: i32 = self.taken.iter().map(|taken| shared(bounds, *taken)).sum();
+            (outside, hidden)
         };
-        plot.breaks()?;
-        Ok(plot)
-    }
-
-    pub(super) fn across(&self, x: f64) -> i32 {
-        let width = f64::from(self.area.dim_in_pixel().0);
-        (self.x.share(x) * width).round() as i32
-    }
-
-    pub(super) fn down(&self, y: f64) -> i32 {
-        let height = f64::from(self.area.dim_in_pixel().1);
-        ((1.0 - self.y.share(y)) * height).round() as i32
-    }
-
-    pub(super) fn at(&self, x: f64, y: f64) -> (i32, i32) {
-        (self.across(x), self.down(y))
-    }
-
-    /// Draws the breaks behind which axes with a band for zeros go on.
-    fn breaks(&self) -> DrawResult {
-        let (width, height) = self.area.dim_in_pixel();
-        let (width, height) = (width as i32, height as i32);
-        if self.y.zeros {
-            let y = height - (BREAK * f64::from(height)).round() as i32;
-            self.band([(-4, y - 3), (width, y + 3)])?;
-            for at in [y - 3, y + 3] {
-                self.line((-6, at + 3), (6, at - 3), FAINT)?;
-            }
-        }
-        if self.x.zeros {
-            let x = (BREAK * f64::from(width)).round() as i32;
-            self.band([(x - 3, 0), (x + 3, height + 4)])?;
-            for at in [x - 3, x + 3] {
-                self.line((at - 3, height + 6), (at + 3, height - 6), FAINT)?;
-            }
-        }
-        Ok(())
-    }
-
-    fn outside(&self, (x, y): (i32, i32)) -> (i32, i32) {
-        (x + self.offset.0, y + self.offset.1)
-    }
-
-    fn band(&self, corners: [(i32, i32); 2]) -> DrawResult {
-        let corners = corners.map(|corner| self.outside(corner));
-        self.outer.draw(&Rectangle::new(corners, PAPER.filled()))?;
-        Ok(())
-    }
-
-    pub(super) fn line(&self, from: (i32, i32), to: (i32, i32), colour: RGBColor) -> DrawResult {
-        let path = vec![self.outside(from), self.outside(to)];
-        self.outer.draw(&PathElement::new(path, colour))?;
-        Ok(())
+        let place = places.min_by_key(hidden).expect("a place");
+        self.taken.push(bounds(place));
+        ((x + place.0, y + place.1), place.2)
     }
 }

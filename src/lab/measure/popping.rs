@@ -1,5 +1,6 @@
 use super::same_size;
 use rara::{Picture, Result};
+use rara_reference::maps;
 
 /// How much a sequence of pictures changes from step to step, in units of 1/255, each the mean over the steps. A pixel's
 /// change is that of the channel that changes most.
@@ -25,9 +26,9 @@ pub fn popping(pictures: &[Picture], truth: &[Picture]) -> Result<Popping> {
         let (mut worst, mut sum, mut worst_beyond, mut sum_beyond) = (0.0_f64, 0.0, 0.0_f64, 0.0);
         let pixels = ours[0].pixels.len();
         for i in 0..pixels {
-            let change = change(&ours[0].pixels[i], &ours[1].pixels[i]);
+            let change = maps::change(&ours[0].pixels[i], &ours[1].pixels[i]);
             let beyond =
-                (change - self::change(&theirs[0].pixels[i], &theirs[1].pixels[i])).max(0.0);
+                (change - maps::change(&theirs[0].pixels[i], &theirs[1].pixels[i])).max(0.0);
             worst = worst.max(change);
             sum += change;
             worst_beyond = worst_beyond.max(beyond);
@@ -40,14 +41,6 @@ pub fn popping(pictures: &[Picture], truth: &[Picture]) -> Result<Popping> {
         total.mean_beyond += share * sum_beyond / pixels as f64;
     }
     Ok(total)
-}
-
-/// The largest difference of a channel of two pixels, on a scale of 0 to 255.
-pub(crate) fn change(before: &[f32; 4], after: &[f32; 4]) -> f64 {
-    let channels = before.iter().zip(after);
-    channels
-        .map(|(a, b)| 255.0 * (f64::from(*a) - f64::from(*b)).abs())
-        .fold(0.0, f64::max)
 }
 
 #[cfg(test)]

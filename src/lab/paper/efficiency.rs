@@ -1,15 +1,13 @@
 //! The paper's first table: how many frames a second each mode draws while one plane moves across the whole scene and the
 //! camera stands still.
 
-use std::time::Instant;
-
 use rara::scene::extent_along;
-use rara::{Clip, ClipOp, Headless, Mode, Plane, Result, Scene, Settings};
+use rara::{Clip, ClipOp, FrameStats, Headless, Mode, Plane, Result, Scene, Settings};
 use serde::{Deserialize, Serialize};
 
 use crate::cases::Case;
 use crate::frames::in_turn;
-use crate::statistics::{least, mean, median, standard_deviation};
+use crate::statistics::{median, quartiles};
 use crate::table::{Cell, Table};
 
 /// What the paper has for each mode, frames a second of its own renderer on its own GPU: Original, Hard, RaRa.
@@ -31,12 +29,10 @@ pub struct EfficiencyRow {
     pub mode: String,
     /// True if frames reuse what a moving plane does not change.
     pub reuse: bool,
-    /// Frames a second: the number of frames over their time from recording to the picture, the median of the sweeps.
-    pub fps: f64,
-    /// Each frame's least time of the sweeps, milliseconds: their mean over the frames, their median and their standard
-    /// deviation.
+    /// The time of a frame from recording to the picture, over all frames of all sweeps, milliseconds: lower quartile, median and
+    /// upper quartile.
     pub ms: [f64; 3],
-    /// The stages, milliseconds a frame.
+    /// The medians of the stages over the same frames, milliseconds.
     pub passes: Vec<(String, f64)>,
 }
 
@@ -50,12 +46,33 @@ pub struct Efficiency {
     pub rows: Vec<EfficiencyRow>,
 }
 
-/// The times of the frames of one sweep, and of their stages.
-#[derive(Default, Clone)]
-struct SweepTimes {
-    wall: Vec<f64>,
-    passes: Vec<(String, f64)>,
-    seconds: f64,
+impl EfficiencyRow {
+    /// The mode's row of the frames of all sweeps.
+    fn new(mode: &str, reuse: bool, frames: &[FrameStats]) -> Self {
+        let wall: Vec<_> = frames.iter().map(|frame| frame.wall_ms).collect();
+        let stages = frames.iter().flat_map(|frame| &frame.passes);
+        let mut names: Vec<_> = Vec::new();
+        for stage in stages {
+            if !names.contains(&stage.name) {
+                names.push(stage.name);
+            }
+        }
+        // A stage that a frame did not run took no time there.
+        let of_stage = |name: &'static str| {
+            let ms = frames.iter().map(|frame| {
+                let stage = frame.passes.iter().find(|stage| stage.name == name);
+                stage.map_or(0.0, |stage| stage.ms)
+            });
+            let ms: Vec<_> = ms.collect();
+            (name.to_owned(), median(&ms).unwrap_or(0.0))
+        };
+        Self {
+            mode: mode.into(),
+            reuse,
+            ms: quartiles(&wall).unwrap_or_default(),
+            passes: names.into_iter().map(of_stage).collect(),
+        }
+    }
 }
 
 /// Measures `frames` frames in each mode, `repeats` times in turn. The device holds the scene.
@@ -79,7 +96,9 @@ pub fn efficiency(
         let sweeps = in_turn(repeats..=repeats, modes.len(), |index, _| {
             sweep(headless, case, &clips, modes[index].1, reuse)
         })?;
-        let of = |((name, _), sweeps): (&(&str, Mode), Vec<SweepTimes>)| row(name, reuse, &sweeps);
+        let of = |((name, _), sweeps): (&(&str, Mode), Vec<Vec<FrameStats>>)| {
+            EfficiencyRow::new(name, reuse, &sweeps.concat())
+        };
         rows.extend(modes.iter().zip(sweeps).map(of));
     }
     Ok(Efficiency {
@@ -97,59 +116,24 @@ fn sweep(
     clips: &[Clip],
     mode: Mode,
     reuse: bool,
-) -> Result<SweepTimes> {
+) -> Result<Vec<FrameStats>> {
     let settings = Settings::default().mode(mode);
-    let mut sweep = SweepTimes::default();
     headless.forget();
-    let begin = Instant::now();
-    for clip in clips {
+    let frame = |clip| {
         if !reuse {
             headless.forget();
         }
-        let stats = headless.render(&case.camera, clip, &settings)?;
-        sweep.wall.push(stats.wall_ms);
-        for pass in &stats.passes {
-            match sweep.passes.iter_mut().find(|(name, _)| name == pass.name) {
-                Some((_, ms)) => *ms += pass.ms,
-                None => sweep.passes.push((pass.name.into(), pass.ms)),
-            }
-        }
-    }
-    sweep.seconds = begin.elapsed().as_secs_f64();
-    Ok(sweep)
-}
-
-fn row(mode: &str, reuse: bool, sweeps: &[SweepTimes]) -> EfficiencyRow {
-    let frames = sweeps.first().map_or(0, |sweep| sweep.wall.len());
-    let of_frame = |frame: usize| sweeps.iter().map(|s| s.wall[frame]).collect::<Vec<_>>();
-    let least: Vec<f64> = (0..frames).map(|frame| least(&of_frame(frame))).collect();
-    let rates: Vec<f64> = sweeps.iter().map(|s| frames as f64 / s.seconds).collect();
-    let nothing = |value: Option<f64>| value.unwrap_or(0.0);
-    let names = sweeps.first().into_iter().flat_map(|sweep| &sweep.passes);
-    let of_all = |name: &String| -> Vec<f64> {
-        let passes = sweeps.iter().flat_map(|sweep| &sweep.passes);
-        passes
-            .filter(|(n, _)| n == name)
-            .map(|(_, ms)| ms / frames as f64)
-            .collect()
+        headless.render(&case.camera, clip, &settings)
     };
-    EfficiencyRow {
-        mode: mode.into(),
-        reuse,
-        fps: nothing(median(&rates)),
-        ms: [mean(&least), median(&least), standard_deviation(&least)].map(nothing),
-        passes: names
-            .map(|(name, _)| (name.clone(), nothing(median(&of_all(name)))))
-            .collect(),
-    }
+    clips.iter().map(frame).collect()
 }
 
 /// The paper's table and ours: frames a second, and their ratio to Original.
 pub fn table(all: &[Efficiency]) -> Table {
-    let note = "One plane moves across the whole scene while the camera stands still. Frames per second are averaged over the \
-        frames, from recording to the picture; ms: each frame's least time of the sweeps, mean, median and standard deviation \
-        over the frames. The ratio is that of the frames per second to those of Original, computed anew. The paper's figures \
-        are of its own renderer on an RTX 4090.";
+    let note = "One plane moves across the whole scene while the camera stands still. A frame's time is from \
+        recording to the picture; ms: its median over all frames of all sweeps, between the quartiles. Frames per second are a \
+        second over that median, and the ratio is to those of Original, computed anew. The paper's figures are of its own \
+        renderer on an RTX 4090, averaged over the frames.";
     let columns = [
         "scene",
         "Gaussians",
@@ -157,9 +141,9 @@ pub fn table(all: &[Efficiency]) -> Table {
         "frames",
         "fps",
         "/ Original",
-        "mean ms",
+        "lower quartile, ms",
         "median ms",
-        "deviation",
+        "upper quartile, ms",
     ];
     let mut table = Table::new("Render efficiency (the paper's first table)", note, columns);
     for (scene, rates) in PAPER {
@@ -178,19 +162,20 @@ pub fn table(all: &[Efficiency]) -> Table {
         }
     }
     for one in all {
-        let original = one.rows.first().map_or(f64::NAN, |row| row.fps);
+        let fps = |row: &EfficiencyRow| 1e3 / row.ms[1];
+        let original = one.rows.first().map_or(f64::NAN, fps);
         for row in &one.rows {
-            let [mean, median, deviation] = row.ms.map(Cell::from);
+            let [lower, median, upper] = row.ms.map(Cell::from);
             table.row([
                 one.scene.as_str().into(),
                 one.gaussians.to_string().into(),
                 row.mode.as_str().into(),
                 if row.reuse { "reuse" } else { "anew" }.into(),
-                row.fps.into(),
-                (row.fps / original).into(),
-                mean,
+                fps(row).into(),
+                (fps(row) / original).into(),
+                lower,
                 median,
-                deviation,
+                upper,
             ]);
         }
     }
@@ -199,7 +184,11 @@ pub fn table(all: &[Efficiency]) -> Table {
 
 pub fn stages(all: &[Efficiency]) -> Table {
     let columns = ["scene", "mode", "frames"];
-    let table = Table::new("Stages of these frames", "Milliseconds per frame.", columns);
+    let table = Table::new(
+        "Stages of these frames",
+        "Medians over the same frames, milliseconds.",
+        columns,
+    );
     let rows = all
         .iter()
         .flat_map(|one| one.rows.iter().map(move |row| (one, row)));
@@ -210,3 +199,6 @@ pub fn stages(all: &[Efficiency]) -> Table {
         (first.map(Cell::from).into(), passes.collect())
     }))
 }
+
+#[cfg(test)]
+mod tests;

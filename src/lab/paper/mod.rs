@@ -17,8 +17,8 @@ use rara::{Error, Headless, Picture, Result, Scene, Settings};
 
 use crate::bench::{self, BenchOptions, ways};
 use crate::cases::{Case, CaseCut, Source, cases, different, plain};
-use crate::maps;
 use perception::Pictures;
+use rara_reference::maps;
 pub use results::PaperOptions;
 use results::{Choices, Maps, Results};
 use series::Property;

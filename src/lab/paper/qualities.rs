@@ -5,7 +5,7 @@ use rara_base::counted::counted;
 
 use super::perception::{Outcome, defect, measured};
 use crate::bench::ways;
-use crate::charts::{Axis, Colours, HeatMap, Radar, Values, Violins};
+use crate::charts::{Axis, HeatMap, Radar, Violins};
 use crate::statistics::{cohens_d, mean, median, standard_deviation, wilcoxon};
 use crate::study::Metric;
 use crate::table::Table;
@@ -130,8 +130,7 @@ pub(super) fn heat_map(outcomes: &[Outcome], way: &str) -> HeatMap {
         columns: Metric::ALL.map(|quality| quality.name().into()).into(),
         values: (0..outcomes.len()).map(row).collect(),
         unit: format!("log10 of the defect of {way} over that of hard; less than 0 is better"),
-        colours: Colours::Diverging(3.0),
-        decimals: 1,
+        most: 3.0,
     }
 }
 
@@ -141,7 +140,7 @@ pub(super) fn violins(outcomes: &[Outcome]) -> Vec<Violins> {
         // A logarithmic axis has no place for 0: what is less than a hundred thousandth is drawn there.
         let of = |(way, _)| {
             let values = known(defects(outcomes, way, quality)).into_iter();
-            Values::new(way, values.map(|v| v.max(1e-5).log10()).collect::<Vec<_>>())
+            (way.into(), values.map(|v| v.max(1e-5).log10()).collect())
         };
         Violins {
             title: quality.name().into(),
@@ -161,7 +160,7 @@ pub(super) fn radar(outcomes: &[Outcome]) -> Radar {
             hard if hard > 0.0 => (100.0 * (1.0 - mean_of(way, quality) / hard)).max(0.0),
             _ => f64::NAN,
         };
-        Values::new(way, Metric::ALL.map(share))
+        (way.into(), Metric::ALL.map(share).into())
     };
     Radar {
         title: "Share of the defects of hard that is avoided".into(),

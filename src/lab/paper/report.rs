@@ -13,9 +13,9 @@ use rara_base::files::write_atomically;
 use super::results::{Choices, Maps, Results};
 use super::{ablation, efficiency, qualities, series};
 use crate::bench::ways;
-use crate::charts::{Axis, Scatter, Series as Line};
-use crate::maps;
+use crate::charts::{Axis, Plot, Series as Points};
 use crate::table::{Table, escaped};
+use rara_reference::maps;
 
 #[derive(Template)]
 #[template(path = "paper.html")]
@@ -321,7 +321,7 @@ fn choices_section(results: &Results) -> Section {
 }
 
 /// The modes and presets of all timed scenes in one chart: time as a ratio to mode `none`, error against the truth.
-fn fronts(results: &Results) -> Scatter {
+fn fronts(results: &Results) -> Plot {
     const NAMES: [&str; 5] = ["hard", "rara", "exact", "preset fast", "preset exact"];
     let of_scene = |(scene, choices): &(String, Choices)| {
         let value = |name: &str, column: &str| choices.tables.first()?.number(name, column);
@@ -330,13 +330,17 @@ fn fronts(results: &Results) -> Scatter {
             let time = value(name, "ms")? / whole?;
             Some((time, value(name, "L1")?, name.to_owned()))
         };
-        Line::labelled(scene.as_str(), NAMES.into_iter().filter_map(point))
+        Points {
+            name: scene.clone(),
+            points: NAMES.into_iter().filter_map(point).collect(),
+        }
     };
-    Scatter {
+    Plot {
         title: "Modes and presets, all scenes".into(),
         x: Axis::log("time per frame over that of the whole scene"),
         y: Axis::log("L1 against the truth (of 255)"),
         series: results.choices.iter().map(of_scene).collect(),
+        joined: false,
         front: Vec::new(),
     }
 }

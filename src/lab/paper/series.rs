@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::bench::{time, truth_settings};
 use crate::cases::{CaseCut, Source, cases};
-use crate::charts::{Axis, Lines, Series as Line};
+use crate::charts::{Axis, Plot, Series as Line};
 use crate::frames::{MODES, picture};
 use crate::measure;
 use crate::table::Table;
@@ -200,31 +200,30 @@ fn planes(camera: &Camera, clip: &Clip, count: u32) -> Result<Clip> {
     ))
 }
 
-pub(super) fn charts(series: &Series) -> [Lines; 2] {
-    let line = |value: fn(&Costs) -> f64| {
-        move |(index, (name, _)): (usize, &(&str, Mode))| {
+pub(super) fn charts(series: &Series) -> [Plot; 2] {
+    let property = series.property;
+    let chart = |what: &str, y: &str, first: usize, value: fn(&Costs) -> f64| {
+        let line = |index: usize| {
             let points = series.points.iter();
-            Line::new(
-                *name,
-                points.map(|point| [point.x, value(&point.modes[index])]),
-            )
+            let points = points.map(|p| (p.x, value(&p.modes[index]), String::new()));
+            Line {
+                name: MODES[index].0.into(),
+                points: points.collect(),
+            }
+        };
+        Plot {
+            title: format!("{what} by {}", property.name()),
+            x: property.axis(),
+            y: Axis::log(y),
+            series: (first..MODES.len()).map(line).collect(),
+            joined: true,
+            front: Vec::new(),
         }
     };
-    let all = MODES.iter().enumerate();
-    let title = |what: &str| format!("{what} by {}", series.property.name());
     [
-        Lines {
-            title: title("Cost"),
-            x: series.property.axis(),
-            y: Axis::log("cost (ms per frame)"),
-            series: all.clone().map(line(|(_, ms, _)| *ms)).collect(),
-        },
-        Lines {
-            title: title("Error"),
-            x: series.property.axis(),
-            y: Axis::log("L1 against the truth (of 255)"),
-            series: all.skip(1).map(line(|(_, _, l1)| *l1)).collect(),
-        },
+        chart("Cost", "cost (ms per frame)", 0, |costs| costs.1),
+        // The first mode cuts nothing.
+        chart("Error", "L1 against the truth (of 255)", 1, |costs| costs.2),
     ]
 }
 

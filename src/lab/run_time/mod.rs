@@ -4,7 +4,7 @@
 mod bound;
 mod correct;
 mod fragments;
-mod model;
+mod full_hd;
 mod numbers;
 mod passes;
 mod proportion;
@@ -40,7 +40,7 @@ const SECTIONS: [(&str, &[u32], Section); 6] = [
     ("bound", &[100_000, 1_000_000, 5_000_000], bound::measure),
     ("proportion", &[2_000_000, 5_000_000], proportion::measure),
     ("start", &[500_000], start::measure),
-    ("model", &model::GAUSSIANS, model::measure),
+    ("full-hd", &[1_000_000, 5_000_000], full_hd::measure),
 ];
 const CORRECT: &str = "correct";
 

@@ -2,7 +2,7 @@
 //! compared with the reference in double precision.
 //!
 //! A [`Regime`] is a kind of difficulty and builds [`Case`]s: a scene, a camera and a clip. [`run`] draws them in every
-//! form of the cut and measures. `rara stress` prints the table, `tests/pictures/stress.rs` holds it to the targets.
+//! form of the cut and measures. `rara-lab stress` prints the table, `tests/pictures/stress.rs` holds it to the targets.
 
 #![forbid(unsafe_code)]
 
@@ -27,7 +27,7 @@ pub use shapes::regimes as shapes;
 
 /// Largest error of alpha times weight in a pixel that a regime may show, unless it states its own limit.
 pub const TARGET: f64 = 2e-4;
-/// The factor of it on GPUs, whose quotients and roots Vulkan lets be several times as coarse as those of CPUs.
+/// The factor of it on GPUs. Vulkan allows them errors in divisions and square roots that are several times those of CPUs.
 const COARSE: f64 = 2.0;
 
 /// A scene, a view of it and a cut.

@@ -8,7 +8,7 @@ use rara_base::fnv;
 use serde::Serialize;
 
 use crate::cases::Case;
-use crate::maps;
+use rara_reference::maps;
 
 #[derive(Debug, Clone)]
 pub struct StudyOptions {

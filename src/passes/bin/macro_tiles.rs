@@ -3,8 +3,8 @@
 //! a splat over the whole picture costs its tiles and nobody waits for it.
 
 use crate::passes::bin::lists::{self, pairs};
+use crate::passes::eye_plan::EyePlan;
 use crate::passes::pipelines::FromPlan;
-use crate::passes::plan::Plan;
 use crate::passes::radix::{self, Keys, Pass, RadixPipelines};
 use crate::passes::recording::{Groups, Recording, counted};
 use crate::passes::shaders::{
@@ -17,7 +17,7 @@ use crate::passes::{cutoff, project, shared, sort};
 use crate::types::TilesData;
 use rara_base::limits;
 
-memory! {
+memory! { EyePlan:
     /// The pairs of each partition of splats, and of its chunks.
     pair_sums: |plan| {
         let partitions = plan.gaussians().div_ceil(limits::RADIX_PARTITION.into());
@@ -45,20 +45,20 @@ memory! {
 }
 
 /// Bytes of so many words where these pipelines run.
-fn scratch(plan: &Plan, words: u64) -> u64 {
+fn scratch(plan: &EyePlan, words: u64) -> u64 {
     lists::scratch(plan, false, words)
 }
 
 /// Macro-tiles of the picture.
-fn count(plan: &Plan) -> u64 {
+fn count(plan: &EyePlan) -> u64 {
     macro_tiles(&plan.data.tiles)
         .map(u64::from)
         .iter()
         .product()
 }
 
-impl FromPlan for batch_count::Constants {
-    fn from_plan(plan: &Plan) -> Self {
+impl FromPlan<EyePlan> for batch_count::Constants {
+    fn from_plan(plan: &EyePlan) -> Self {
         Self {
             several: Weight::from_plan(plan).has_several_kinds(),
         }
@@ -75,7 +75,7 @@ fn macro_tiles(tiles: &TilesData) -> [u32; 2] {
 }
 
 /// Passes of the sort by macro-tile: one for pictures of 1920x1080.
-fn passes(plan: &Plan) -> u32 {
+fn passes(plan: &EyePlan) -> u32 {
     let [columns, rows] = macro_tiles(&plan.data.tiles);
     let last = columns * rows - 1;
     (u32::BITS - last.leading_zeros())
@@ -91,7 +91,7 @@ const _: () = assert!(
 /// Chunks of splats in a partition, as in glsl/macro_tiles.glsl.
 const CHUNKS: u64 = (limits::RADIX_PARTITION / limits::RADIX_GROUP_SIZE) as u64;
 
-pub(super) fn record(recording: &mut Recording<'_, '_>) {
+pub(super) fn record(recording: &mut Recording<'_, '_, EyePlan>) {
     let plan = recording.plan;
     let order = sort::order(plan);
     let [rects, chunk_begins, _] = sort::spare(plan);

@@ -9,15 +9,16 @@ pub(super) mod lists;
 pub(super) mod macro_tiles;
 mod spans;
 
+use crate::passes::eye_plan::EyePlan;
 use crate::passes::stage::Stage;
 use rara_gpu::DeviceShape;
 
-pub(crate) static STAGE: Stage = Stage {
+pub(crate) static STAGE: Stage<EyePlan> = Stage {
     name: "bin",
     needed: |plan| plan.finds_view() && plan.is_tiled(),
     missed: |plan| plan.is_tiled() || plan.gaussians() == 0,
     memory: &[lists::STORAGES, spans::STORAGES, macro_tiles::STORAGES],
-    record: |recording| match recording.plan.way.shape {
+    record: |recording| match recording.plan.cut.shape {
         DeviceShape::Cpu => spans::record(recording),
         DeviceShape::Gpu { .. } => macro_tiles::record(recording),
     },

@@ -2,7 +2,7 @@
 //! are few and long, as suits processors.
 
 use crate::passes::bin::lists::{self, pairs};
-use crate::passes::plan::Plan;
+use crate::passes::eye_plan::EyePlan;
 use crate::passes::recording::{Groups, Recording, counted};
 use crate::passes::shaders::{
     span_count, span_scan, span_scatter, tile_count, tile_scan, tile_scatter,
@@ -10,7 +10,7 @@ use crate::passes::shaders::{
 use crate::passes::storage::{buffers, memory};
 use crate::passes::{project, shared, sort};
 
-memory! {
+memory! { EyePlan:
     /// Of each run the number of its spans in each row of tiles, and of its pairs.
     span_counts: |plan| scratch(plan, (rows(plan) + 1) * u64::from(plan.data.tiles.span_runs));
     row_begins: |plan| scratch(plan, rows(plan) + 1);
@@ -25,16 +25,16 @@ memory! {
 }
 
 /// Rows of tiles.
-fn rows(plan: &Plan) -> u64 {
+fn rows(plan: &EyePlan) -> u64 {
     (plan.data.tiles.tile_count / plan.data.tiles.tile_columns).into()
 }
 
 /// Bytes of so many words where these pipelines run.
-fn scratch(plan: &Plan, words: u64) -> u64 {
+fn scratch(plan: &EyePlan, words: u64) -> u64 {
     lists::scratch(plan, true, words)
 }
 
-pub(super) fn record(recording: &mut Recording<'_, '_>) {
+pub(super) fn record(recording: &mut Recording<'_, '_, EyePlan>) {
     // The buffers that the sort has left over have room for the masks in the order of depth.
     let [mask_origins, masks_above, masks_below] = sort::spare(recording.plan);
     let order = sort::order(recording.plan);

@@ -1,6 +1,7 @@
 //! A radix sort by partitions of consecutive keys, each owned by a workgroup, as suits graphics processors. Its scratch is
 //! `histogram`, and `large_ties` for those of one depth that are more than a workgroup orders.
 
+use crate::passes::eye_plan::EyePlan;
 use crate::passes::radix::{Keys, Pass, RadixPipelines};
 use crate::passes::recording::{Groups, Recording, counted};
 use crate::passes::shaders::{radix_large_ties, radix_ties};
@@ -10,7 +11,7 @@ use crate::passes::storage::buffers;
 use crate::passes::{compact, project};
 
 /// Sorts as the other pipelines do (`runs.rs`), pass by pass, and leaves out the same passes.
-pub(super) fn record(recording: &mut Recording<'_, '_>) {
+pub(super) fn record(recording: &mut Recording<'_, '_, EyePlan>) {
     let plan = recording.plan;
     let depth_keys = &project::MEMORY.depth_keys;
     let passes = plan.way.sort_passes;

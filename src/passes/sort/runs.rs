@@ -1,6 +1,7 @@
 //! A radix sort by runs of consecutive keys, each owned by one invocation. The runs are few and long, as suits processors.
 //! Its scratch is `histogram`.
 
+use crate::passes::eye_plan::EyePlan;
 use crate::passes::project;
 use crate::passes::recording::{Groups, Recording, counted};
 use crate::passes::shaders::{sort_count, sort_scan, sort_scatter, sort_ties};
@@ -10,7 +11,7 @@ use crate::passes::storage::buffers;
 
 /// Sorts the splats by their depths, and those of one depth by their number in the scene. Of the passes that the scene's
 /// bounds ask for, the device skips the first ones, as many as there are leading digits in which the keys agree (sort.glsl).
-pub(super) fn record(recording: &mut Recording<'_, '_>) {
+pub(super) fn record(recording: &mut Recording<'_, '_, EyePlan>) {
     let depth_keys = &project::MEMORY.depth_keys;
     let passes = recording.plan.way.sort_passes;
     for pass in 0..passes {

@@ -2,13 +2,16 @@
 //!
 //! Where at most three crossings are open in a pixel, the share is the sum of the chances of all combinations of their
 //! sides that the region keeps, by the chances of one, two and three half-spaces at once. Otherwise the stretches between
-//! crossings are added up, each of which the region keeps or not, of the line of sight and of lines beside it: exact
-//! without low-pass.
+//! crossings are added up, each of which the region keeps or not, of lines that cross the surfaces as steeply as one direction
+//! can, at the points of a lattice: exact without low-pass. Open planes of a list are weighed as the polytope that they bound.
 
 use super::UnitSurface;
-use super::crossing::{PHI_ONE, Sight, SurfaceCrossing};
-use crate::orthant::{Threshold, both, orthant};
-use crate::real::{Real, Vec3};
+use super::crossing::Sight;
+use super::reduced::list_op;
+use super::share::share;
+use crate::orthant::{both, orthant};
+use crate::real::{Real, Vec3, vec3};
+use crate::threshold::{PHI_ONE, Threshold};
 use rara_scene::clip::ClipOp;
 use rara_scene::clip::postfix::answer;
 
@@ -16,50 +19,14 @@ use rara_scene::clip::postfix::answer;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Combination<T>(pub Vec<(UnitSurface<T>, Vec<ClipOp>)>);
 
-/// A stretch of a line, and whether a surface keeps it or the rest.
-#[derive(Debug, Clone, Copy)]
-struct Stretch<T> {
-    start: T,
-    end: T,
-    between: bool,
-}
-
-impl<T: Real> Stretch<T> {
-    fn from_crossing(crossed: &SurfaceCrossing<T>) -> Self {
-        let place = |z: T, first: bool| match (crossed.first.far, first) {
-            (true, true) | (false, false) => -z,
-            (false, true) | (true, false) => z,
-        };
-        let first = place(crossed.first.z, true);
-        match crossed.second {
-            Some(second) => {
-                let second = place(second.z, false);
-                Self {
-                    start: first.min(second),
-                    end: first.max(second),
-                    between: crossed.between,
-                }
-            }
-            None if crossed.first.far => Self {
-                start: first,
-                end: T::infinity(),
-                between: true,
-            },
-            None => Self {
-                start: T::neg_infinity(),
-                end: first,
-                between: true,
-            },
-        }
-    }
-
-    fn keeps(&self, t: T) -> bool {
-        (t >= self.start && t <= self.end) == self.between
-    }
+/// What a function of this gradient changes by for each deviation.
+pub(super) fn among<T: Real>(deviations: &[Vec3<T>; 3], gradient: Vec3<T>) -> Vec3<T> {
+    let [x, y, z] = deviations.map(|deviation| gradient.dot(deviation));
+    vec3(x, y, z)
 }
 
 impl<T: Real> Combination<T> {
-    fn answer(&self, kept: &dyn Fn(usize) -> bool) -> bool {
+    pub(super) fn answer(&self, kept: &dyn Fn(usize) -> bool) -> bool {
         let answers = self.0.iter().enumerate();
         let answers = answers.map(|(i, (_, operators))| (kept(i), operators.iter().copied()));
         answer(answers, true, |op, a, b| match op {
@@ -73,60 +40,23 @@ impl<T: Real> Combination<T> {
         self.answer(&|i| self.0[i].0.at(point) >= T::zero())
     }
 
-    /// The measure of what is kept of a line from `start` to `end`, by the measure of a stretch.
-    pub(crate) fn measure(
-        &self,
-        sight: &Sight<T>,
-        (start, end): (T, T),
-        measure: &dyn Fn(T, T) -> T,
-    ) -> T {
-        let stretches: Vec<_> = self
-            .0
-            .iter()
-            .map(|(surface, _)| Stretch::from_crossing(&sight.crossed(surface)))
-            .collect();
-        self.walked(&stretches, (start, end), measure)
-    }
-
-    fn walked(
-        &self,
-        stretches: &[Stretch<T>],
-        (start, end): (T, T),
-        measure: &dyn Fn(T, T) -> T,
-    ) -> T {
-        let ends = stretches.iter().flat_map(|s| [s.start, s.end]);
-        let mut ends: Vec<T> = ends.filter(|&t| t > start && t < end).collect();
-        ends.extend([start, end]);
-        ends.sort_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
-        let one = T::one();
-        let mut total = T::zero();
-        for pair in ends.windows(2) {
-            let (low, high) = (pair[0], pair[1]);
-            let middle = match (low.is_finite(), high.is_finite()) {
-                (true, true) => T::of(0.5) * (low + high),
-                (true, false) => low + one,
-                (false, true) => high - one,
-                (false, false) => T::zero(),
-            };
-            if self.answer(&|i| stretches[i].keeps(middle)) {
-                total = total + measure(low, high);
-            }
-        }
-        total
-    }
-
     /// The share that is kept in a pixel.
     pub(crate) fn share(&self, sight: &Sight<T>) -> T {
         if let [(surface, _)] = &self.0[..] {
             return sight.share(surface);
         }
         let crossed: Vec<_> = self.0.iter().map(|(s, _)| sight.crossed(s)).collect();
+        let bent = crossed.iter().position(|crossed| crossed.bends);
         let mut open: Vec<Threshold<T>> = Vec::new();
         let is_open = |t: &Threshold<T>| t.z.abs() < T::of(PHI_ONE);
         // Of each surface: which of the open crossings it has, or its answer.
         let places: Vec<_> = crossed
             .iter()
             .map(|crossed| {
+                if crossed.bends {
+                    open.push(crossed.first);
+                    return (Some(open.len() - 1), None);
+                }
                 let mut place = |t: &Threshold<T>| {
                     is_open(t).then(|| {
                         open.push(*t);
@@ -146,6 +76,7 @@ impl<T: Real> Combination<T> {
             let crossed = &crossed[i];
             let by_first = side(first, crossed.first.z);
             match crossed.second {
+                _ if crossed.bends => by_first,
                 None => by_first,
                 Some(t) if crossed.between => by_first && side(second, t.z),
                 Some(t) => by_first || side(second, t.z),
@@ -155,10 +86,14 @@ impl<T: Real> Combination<T> {
             true => T::one(),
             false => T::zero(),
         };
+        let ends = (-T::of(PHI_ONE), T::of(PHI_ONE));
+        let mass = |low: T, high: T| high.phi() - low.phi();
+        let by_lines = || self.measure_through(sight, ends, &mass);
         let share = match open[..] {
+            _ if bent.is_some() && open.len() > 1 => by_lines(),
             [] => answer(0),
             [a] => {
-                let p = a.z.phi();
+                let p = bent.map_or_else(|| a.z.phi(), |bent| sight.share(&self.0[bent].0));
                 answer(0) * (T::one() - p) + answer(1) * p
             }
             [a, b] => {
@@ -181,14 +116,10 @@ impl<T: Real> Combination<T> {
                     + answer(4) * (r - pr - qr + all)
                     + answer(0) * (T::one() - p - q - r + pq + pr + qr - all)
             }
-            _ => {
-                let ends = (T::neg_infinity(), T::infinity());
-                let lines = sight.beside().into_iter();
-                lines.fold(T::zero(), |sum, (line, weight)| {
-                    let kept = self.measure(&line, ends, &|low, high| high.phi() - low.phi());
-                    sum + weight * kept
-                })
-            }
+            _ => match list_op(&self.0) {
+                Some(op) => share(op, crossed.iter().map(|crossed| crossed.first)),
+                None => by_lines(),
+            },
         };
         share.max(T::zero()).min(T::one())
     }

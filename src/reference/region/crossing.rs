@@ -9,14 +9,12 @@
 //! is the plane's z.
 
 use crate::footprint::{Gradients, determinant, scaled};
-use crate::orthant::{Direction, Threshold};
 use crate::real::{Real, Vec3};
 use crate::region::UnitSurface;
+use crate::threshold::{Direction, PHI_ONE, Threshold};
 
-/// Beyond this Phi is taken for 0 or 1.
-pub(super) const PHI_ONE: f64 = 4.5;
 /// Beyond this nothing is left of a splat, and no chord is as long.
-const FAR_AWAY: f64 = 40.0;
+pub(super) const FAR_AWAY: f64 = 40.0;
 /// How much the mean may move by a surface's bend across `w`, in deviations, before the bend is integrated over.
 const BENT: f64 = 0.05;
 
@@ -27,8 +25,6 @@ pub(crate) struct Sight<T> {
     c: Vec3<T>,
     low_pass: T,
     det: T,
-    /// What counts of the variance across the line: all, but where nodes stand for a part of it.
-    lateral: T,
     /// The mean m, given the pixel.
     pub(crate) mean: Vec3<T>,
 }
@@ -42,6 +38,8 @@ pub(super) struct SurfaceCrossing<T> {
     pub(super) second: Option<Threshold<T>>,
     /// True when what is kept lies between the two, false when it lies outside.
     pub(super) between: bool,
+    /// True when the surface is near and bends across the direction in which it varies most.
+    pub(super) bends: bool,
 }
 
 impl<T: Real> Sight<T> {
@@ -72,7 +70,6 @@ impl<T: Real> Sight<T> {
             c,
             low_pass,
             det,
-            lateral: T::one(),
             mean: along + (b1 * dx + b2 * dy) * low_pass,
         }
     }
@@ -82,17 +79,11 @@ impl<T: Real> Sight<T> {
         let [b1, b2] = self.gradients;
         let across =
             v * (b1.squared() + b2.squared() + self.low_pass) - b1 * b1.dot(v) - b2 * b2.dot(v);
-        let all = (self.c * self.c.dot(v) + across * self.low_pass) * (T::one() / self.det);
-        if self.lateral == T::one() {
-            return all;
-        }
-        let line = self.line();
-        let along = line * line.dot(v);
-        along + (all - along) * self.lateral
+        (self.c * self.c.dot(v) + across * self.low_pass) * (T::one() / self.det)
     }
 
     /// The direction of the line, a unit vector.
-    fn line(&self) -> Vec3<T> {
+    pub(crate) fn line(&self) -> Vec3<T> {
         self.c * (T::one() / self.c.length().max(T::of(1e-30)))
     }
 
@@ -101,12 +92,7 @@ impl<T: Real> Sight<T> {
         let [b1, b2] = self.gradients;
         let across = a.cross(b1).squared() + a.cross(b2).squared() + self.low_pass * a.squared();
         let along = a.dot(self.c);
-        let all = (along * along + self.low_pass * across) / self.det;
-        if self.lateral == T::one() {
-            return all;
-        }
-        let along = a.dot(self.line());
-        along * along + self.lateral * (all - along * along).max(T::zero())
+        (along * along + self.low_pass * across) / self.det
     }
 
     /// The trace of `Q C`.
@@ -115,16 +101,16 @@ impl<T: Real> Sight<T> {
         let bend = &surface.bend;
         let size = b1.squared() + b2.squared() + self.low_pass;
         let across = bend.trace() * size - bend.form(b1) - bend.form(b2);
-        let all = (bend.form(self.c) + self.low_pass * across) / self.det;
-        if self.lateral == T::one() {
-            return all;
-        }
-        let along = bend.form(self.line());
-        along + self.lateral * (all - along)
+        (bend.form(self.c) + self.low_pass * across) / self.det
     }
 
-    /// Lines beside this one that stand for most of the variance across it, and their weights; each has the rest.
-    pub(super) fn beside(&self) -> [(Self, T); 9] {
+    /// The mean of the Gaussian given the pixel.
+    pub(super) fn mean(&self) -> Vec3<T> {
+        self.mean
+    }
+
+    /// Its deviations along the line and in two directions across it, none of which depends on another.
+    pub(super) fn deviations(&self) -> [Vec3<T>; 3] {
         let [b1, b2] = self.gradients;
         let wider = if b1.squared() < b2.squared() { b2 } else { b1 };
         let p = wider * (T::one() / wider.length().max(T::of(1e-30)));
@@ -143,16 +129,7 @@ impl<T: Real> Sight<T> {
         };
         let (first, variance) = root(p);
         let (second, _) = root(q - p * (q.dot(covariance(p)) / variance));
-        let at = |i: usize, j: usize| {
-            let (x, y) = (T::of(BESIDE[i].0), T::of(BESIDE[j].0));
-            let sight = Self {
-                lateral: T::one() - T::of(BY_NODES),
-                mean: self.mean + first * x + second * y,
-                ..*self
-            };
-            (sight, T::of(BESIDE[i].1 * BESIDE[j].1))
-        };
-        std::array::from_fn(|number| at(number / 3, number % 3))
+        [self.line(), first, second]
     }
 
     /// The deviation of a function with this gradient, and the direction in which it varies most: the line of sight itself
@@ -192,7 +169,12 @@ impl<T: Real> Sight<T> {
         let (value, gradient) = (surface.at(self.mean), surface.gradient(self.mean));
         let (n, along) = self.steepest(gradient);
         let bend = surface.bend.form(along);
-        let value = value + self.trace(surface) - bend;
+        let shift = self.trace(surface) - bend;
+        let value = value + shift;
+        // A function's square has its value at PHI_ONE there, less 1.
+        let squares = T::of(PHI_ONE * PHI_ONE - 1.0) * (bend.abs() + shift.abs());
+        let is_near = (value + bend).abs() <= T::of(PHI_ONE) * n + squares;
+        let bends = shift.abs() > T::of(BENT) * n && is_near;
         let (two, four) = (T::of(2.0), T::of(4.0));
         let square = n * n - four * bend * value;
         let far_away = T::of(FAR_AWAY).copysign(value);
@@ -200,6 +182,7 @@ impl<T: Real> Sight<T> {
             first: self.threshold(z, gradient),
             second: None,
             between: true,
+            bends,
         };
         let sum = n + square.max(T::zero()).sqrt();
         let is_crossed = square >= T::zero() && sum > T::zero();
@@ -219,12 +202,14 @@ impl<T: Real> Sight<T> {
                 first,
                 second: None,
                 between: true,
+                bends,
             };
         }
         SurfaceCrossing {
             first,
             second: Some(self.threshold(other, gradient + across * other)),
             between: bend < T::zero(),
+            bends,
         }
     }
 
@@ -303,11 +288,6 @@ impl<T: Real> SurfaceCrossing<T> {
         }
     }
 }
-
-/// The share of the variance across a line that lines beside it stand for.
-const BY_NODES: f64 = 0.75;
-/// Where those lines are, in deviations, and what they weigh: Gauss and Hermite's nodes, for that share of the variance.
-const BESIDE: [(f64, f64); 3] = [(-1.5, 1.0 / 6.0), (0.0, 2.0 / 3.0), (1.5, 1.0 / 6.0)];
 
 /// Gauss and Hermite's nodes and weights for a normal variable.
 const NODES: [(f64, f64); 7] = [

@@ -7,6 +7,7 @@ mod crossing;
 mod ellipsoid;
 mod gaussian_side;
 mod half_space;
+mod lines;
 mod plane;
 mod quadric;
 mod reduced;
@@ -15,9 +16,7 @@ mod share;
 mod sides;
 mod surface;
 #[cfg(test)]
-mod tile_combination;
-#[cfg(test)]
-mod tile_side;
+mod tests;
 
 pub use box_side::{Bounds, box_side};
 pub use combination::Combination;

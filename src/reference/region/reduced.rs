@@ -3,7 +3,6 @@
 use super::surface::unit_surface;
 use super::{Ellipsoid, Side, UnitSurface, surface_gaussian_side};
 use crate::real::Real;
-use rara_base::limits::MAX_CUTTING;
 use rara_scene::clip::postfix::{answer, postfix};
 use rara_scene::clip::{Clip, ClipOp};
 use rara_scene::settings::Settings;
@@ -47,54 +46,34 @@ impl<T: Real> RegionRest<T> {
 
     /// The operation that joins all surfaces, if there is only one such operation and none of the surfaces bends.
     pub(crate) fn as_planes(&self) -> Option<ClipOp> {
-        let Self::Cut(surfaces) = self else {
-            return None;
-        };
-        let mut operators = surfaces.iter().flat_map(|(_, operators)| operators);
-        let op = operators.next().copied().unwrap_or_default();
-        let is_flat = surfaces.iter().all(|(surface, _)| surface.is_flat());
-        (is_flat && operators.all(|other| *other == op)).then_some(op)
+        match self {
+            Self::Cut(surfaces) => list_op(surfaces),
+            Self::Decided(_) => None,
+        }
     }
 }
 
-/// What is left of the region of a Gaussian that has a band of `deviations` standard deviations. Beyond [`MAX_CUTTING`] surfaces only those count that are nearest; of the others it is on the side of its
-/// centre.
+/// The operation that joins all surfaces, if there is only one such operation and none of the surfaces bends.
+pub(super) fn list_op<T: Real>(surfaces: &[(UnitSurface<T>, Vec<ClipOp>)]) -> Option<ClipOp> {
+    let mut operators = surfaces.iter().flat_map(|(_, operators)| operators);
+    let op = operators.next().copied().unwrap_or_default();
+    let is_flat = surfaces.iter().all(|(surface, _)| surface.is_flat());
+    (is_flat && operators.all(|other| *other == op)).then_some(op)
+}
+
+/// What is left of the region of a Gaussian that has a band of `deviations` standard deviations.
 pub(crate) fn reduced<T: Real>(
     ellipsoid: &Ellipsoid<T>,
     deviations: T,
     clip: &Clip,
     settings: &Settings,
 ) -> RegionRest<T> {
-    let steps = postfix(clip);
-    let seen: Vec<_> = steps
-        .iter()
-        .map(|step| {
-            let surface = &step.surface;
-            let side = surface_gaussian_side(surface, ellipsoid, deviations, settings);
-            (side, unit_surface(surface, ellipsoid))
-        })
-        .collect();
-    let distance = |surface: &UnitSurface<T>| {
-        let offset = surface.half_space.offset.abs();
-        let slope = surface.half_space.normal.length() + (offset * surface.bend.norm()).sqrt();
-        (offset / slope.max(T::of(1e-30))).min(T::of(1e29))
-    };
-    let mut nearest: Vec<usize> = (0..seen.len())
-        .filter(|&index| seen[index].0 == Side::Cutoff)
-        .collect();
-    // Of equal distances the first in the list counts.
-    nearest.sort_by(|&a, &b| {
-        let (a, b) = (distance(&seen[a].1), distance(&seen[b].1));
-        a.partial_cmp(&b).unwrap_or(std::cmp::Ordering::Equal)
-    });
-    nearest.truncate(MAX_CUTTING as usize);
-    let numbered = seen.into_iter().enumerate();
-    let answers = numbered.zip(steps).map(|((index, (side, surface)), step)| {
+    let answers = postfix(clip).into_iter().map(|step| {
+        let side = surface_gaussian_side(&step.surface, ellipsoid, deviations, settings);
         let part = match side {
-            Side::Cutoff if nearest.contains(&index) => {
-                RegionRest::Cut(vec![(surface, Vec::new())])
+            Side::Cutoff => {
+                RegionRest::Cut(vec![(unit_surface(&step.surface, ellipsoid), Vec::new())])
             }
-            Side::Cutoff => RegionRest::Decided(surface.half_space.offset >= T::zero()),
             side => RegionRest::Decided(side == Side::Visible),
         };
         (part, step.operators)

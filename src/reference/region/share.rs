@@ -1,7 +1,8 @@
 //! A pixel's share of a splat that several surfaces cut.
 
-use crate::orthant::{Threshold, orthant};
+use crate::orthant::orthant;
 use crate::real::Real;
+use crate::threshold::Threshold;
 use rara_scene::clip::ClipOp;
 
 /// The share of a splat in one pixel that is kept by all surfaces, or by any.

@@ -21,14 +21,14 @@ setters! {
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
     #[non_exhaustive]
     pub struct Ndc {
-        /// A y of 1 is the picture's upper edge, as in Direct3D, Metal, WebGPU and OpenGL, and in Vulkan with a viewport of
-        /// negative height. Otherwise it is the lower one.
+        /// True if y = 1 is the upper edge of the picture, as in Direct3D, Metal, WebGPU and OpenGL, and in Vulkan with a
+        /// viewport of negative height. False if it is the lower edge.
         pub y_up: bool,
-        /// Depths go from -1 to 1, as in OpenGL and by `VK_EXT_depth_clip_control`, and the buffer holds `(z + 1) / 2`.
-        /// Otherwise they go from 0 to 1, and the buffer holds them.
+        /// True if depths go from -1 to 1, as in OpenGL and with `VK_EXT_depth_clip_control`; the buffer then has `(z + 1) /
+        /// 2`. False if depths go from 0 to 1; the buffer then has the depths themselves.
         pub negative_one_to_one: bool,
-        /// Nearer is more in the depth buffer. It is asked of orthographic projections alone, whose matrix is the same for one
-        /// that looks the other way; that of a perspective one says it.
+        /// True if nearer points have larger values in the depth buffer. It matters only for orthographic projections, because
+        /// their matrices do not tell; the matrix of a perspective projection does.
         pub reversed: bool,
     }
 }
@@ -111,20 +111,12 @@ impl Camera {
         };
         let [offset, scale] = map;
         let depth = DepthMap::new(lens.projection, offset + scale * back, scale)?;
-        let camera = Self {
-            width: size.0,
-            height: size.1,
-            fx: lens.focal[0] * unit,
-            fy: lens.focal[1] * unit,
-            cx: lens.principal[0],
-            cy: lens.principal[1],
-            eye: view.to_world(lens.eye) - back * forward,
-            rotation,
-            projection: lens.projection,
-            clip_near: None,
-            clip_far: None,
-            near_cut: None,
-        };
+        let eye = view.to_world(lens.eye) - back * forward;
+        let camera = Self::centred(eye, rotation, lens.focal[0] * unit, size)
+            .fy(lens.focal[1] * unit)
+            .cx(lens.principal[0])
+            .cy(lens.principal[1])
+            .projection(lens.projection);
         Ok((camera.checked()?, depth))
     }
 }
@@ -186,8 +178,7 @@ impl View {
                 "the view matrix is singular: its columns are {lengths:?} long; give a rotation and a translation"
             ));
         }
-        let oblique = (axes.transpose() * axes - DMat3::IDENTITY).to_cols_array();
-        if !oblique.iter().all(|v| v.abs() <= VIEW_TOLERANCE) {
+        if super::oblique(axes) > VIEW_TOLERANCE {
             return refused(format!(
                 "the view matrix shears, or scales unevenly: its columns are {lengths:?} long and must be equally long and square to each other; leave such a scale out of the view"
             ));

@@ -1,11 +1,11 @@
-//! `cameras.bin` and `images.bin`: little endian, each count checked against the file's size before it is believed.
+//! `cameras.bin`, `images.bin` and `points3D.bin`: little endian, each count checked against the file's size before it is believed.
 
 use std::io::{BufRead, BufReader, Read, Seek, SeekFrom};
 use std::path::Path;
 
 use glam::{DQuat, DVec3};
 
-use super::colmap::{ColmapImage, Lens, Lenses, MODELS};
+use super::colmap_model::{ColmapImage, Lens, Lenses, MODELS};
 use rara_base::counted::counted;
 use rara_base::error::{Error, Result};
 
@@ -79,6 +79,24 @@ pub(super) fn images<R: Read + Seek>(source: R, path: &Path) -> Result<Vec<Colma
     Ok(images)
 }
 
+/// The positions of the model's points.
+pub(super) fn points<R: Read + Seek>(source: R, path: &Path) -> Result<Vec<DVec3>> {
+    /// Its colour, its error and, for each picture that shows it, two numbers.
+    const COLOUR_AND_ERROR: u64 = 3 + 8;
+    const VIEW_SIZE: u64 = 8;
+    let mut records = Records::new(source, path)?;
+    let count = records.count("points", 8 + 3 * 8 + COLOUR_AND_ERROR + 8)?;
+    let mut points = Vec::with_capacity(count);
+    for _ in 0..count {
+        let _id: [u8; 8] = records.bytes()?;
+        points.push(records.numbers()?.into());
+        records.skip(COLOUR_AND_ERROR)?;
+        let views = u64::from_le_bytes(records.bytes()?);
+        records.skip(views.saturating_mul(VIEW_SIZE))?;
+    }
+    Ok(points)
+}
+
 impl<'a, R: Read + Seek> Records<'a, R> {
     fn new(mut source: R, path: &'a Path) -> Result<Self> {
         let size = source.seek(SeekFrom::End(0)).map_err(Error::io(path))?;
@@ -111,16 +129,11 @@ impl<'a, R: Read + Seek> Records<'a, R> {
     }
 
     fn take(&mut self, bytes: u64) -> Result<()> {
-        match self.left.checked_sub(bytes) {
-            Some(left) => {
-                self.left = left;
-                Ok(())
-            }
-            None => {
-                Err(self
-                    .error("the file ends inside a record; it is cut off, export the model again"))
-            }
-        }
+        let left = self.left.checked_sub(bytes).ok_or_else(|| {
+            self.error("the file ends inside a record; it is cut off, export the model again")
+        })?;
+        self.left = left;
+        Ok(())
     }
 
     fn bytes<const N: usize>(&mut self) -> Result<[u8; N]> {

@@ -1,4 +1,4 @@
-//! `cameras.txt` and `images.txt`.
+//! `cameras.txt`, `images.txt` and `points3D.txt`.
 
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
@@ -6,7 +6,7 @@ use std::str::SplitAsciiWhitespace;
 
 use glam::{DQuat, DVec3};
 
-use super::colmap::{ColmapImage, Lens, Lenses, MODELS};
+use super::colmap_model::{ColmapImage, Lens, Lenses, MODELS};
 use rara_base::error::{Error, Result};
 
 /// The line of a picture's points has some 30 bytes for each, and no picture has so many.
@@ -49,7 +49,13 @@ pub(super) fn lenses<R: Read>(source: R, path: &Path) -> Result<Lenses> {
 pub(super) fn images<R: Read>(source: R, path: &Path) -> Result<Vec<ColmapImage>> {
     let mut lines = Lines::new(source, path);
     let mut images = Vec::new();
+    // A picture's points are a line, which some programs leave out and others leave empty.
+    let mut points_may_follow = false;
     while lines.next_data()? {
+        if points_may_follow && lines.is_points() {
+            points_may_follow = false;
+            continue;
+        }
         let image = lines.parse(|words| {
             let _id: u32 = word(words)?;
             let [w, x, y, z] = [word(words)?, word(words)?, word(words)?, word(words)?];
@@ -65,12 +71,30 @@ pub(super) fn images<R: Read>(source: R, path: &Path) -> Result<Vec<ColmapImage>
             })
         });
         images.push(image.ok_or_else(|| {
-            lines.error("this is not `IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME`; export the model again")
+            lines.error(
+                "this is neither `IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME` nor the `X Y POINT3D_ID`s of the picture before \
+                 it; export the model again",
+            )
         })?);
-        // The picture's points: always one line, often an empty one.
-        lines.next()?;
+        points_may_follow = true;
     }
     Ok(images)
+}
+
+/// The positions of the model's points.
+pub(super) fn points<R: Read>(source: R, path: &Path) -> Result<Vec<DVec3>> {
+    let mut lines = Lines::new(source, path);
+    let mut points = Vec::new();
+    while lines.next_data()? {
+        let point = lines.parse(|words| {
+            let _id: u64 = word(words)?;
+            Some(DVec3::new(word(words)?, word(words)?, word(words)?))
+        });
+        points.push(point.ok_or_else(|| {
+            lines.error("this is not `POINT3D_ID X Y Z R G B ERROR TRACK`; export the model again")
+        })?);
+    }
+    Ok(points)
 }
 
 fn word<T: std::str::FromStr>(words: &mut SplitAsciiWhitespace<'_>) -> Option<T> {
@@ -114,6 +138,17 @@ impl<'a, R: Read> Lines<'a, R> {
             }
         }
         Ok(false)
+    }
+
+    /// True for threes of numbers, which no line of a picture is: its name stands behind nine.
+    fn is_points(&self) -> bool {
+        let line = String::from_utf8_lossy(&self.line);
+        let is_number = |word: &str| word.parse::<f64>().is_ok();
+        let (mut count, mut last) = (0, "");
+        for word in line.split_ascii_whitespace() {
+            (count, last) = (count + 1, word);
+        }
+        count % 3 == 0 && is_number(last) && line.split_ascii_whitespace().take(9).all(is_number)
     }
 
     fn parse<T>(

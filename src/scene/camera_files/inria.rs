@@ -45,13 +45,7 @@ pub(super) fn parse(json: &[u8]) -> Result<Vec<Entry>, String> {
             },
         };
         let what = format!("camera {number} (`{}`)", shortened(&name));
-        let pinhole = parts.camera(&what);
-        Entry {
-            name,
-            what,
-            lens: None,
-            pinhole,
-        }
+        Entry::new(name, what, |what| parts.camera(what))
     };
     Ok(entries.into_iter().enumerate().map(named).collect())
 }

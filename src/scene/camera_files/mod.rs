@@ -1,12 +1,17 @@
-//! Files of cameras: 3DGS `cameras.json`, nerfstudio `transforms.json`, COLMAP sparse folders and our single camera.
+//! Files of cameras: 3DGS, nerfstudio, SuperSplat, Pix4D and glTF, COLMAP sparse folders and our own; those of others are named.
 
 mod colmap;
 mod colmap_binary;
+mod colmap_model;
 mod colmap_text;
+mod gltf;
 mod inria;
 mod nerfstudio;
+mod opf;
+mod others;
 mod rigid;
 mod single;
+mod supersplat;
 
 pub use single::SavedCamera;
 
@@ -16,12 +21,14 @@ use std::sync::Arc;
 use glam::{DMat3, DMat4, DVec3};
 
 use crate::camera::Camera;
+use crate::clip::Shape;
+use others::Members;
 use rara_base::counted::counted;
 use rara_base::error::{Error, Result, shortened};
 use rara_base::json;
 use rigid::Rigid;
 
-/// A camera of a file, and what the file calls it.
+/// A camera of a file and its name there.
 ///
 /// A file is read whatever its cameras are: what cannot be drawn is an error of [`camera`](Self::camera), where it is asked for.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,6 +51,23 @@ struct Entry {
 
 type Outcome = std::result::Result<RepairedCamera, String>;
 
+impl Entry {
+    /// A camera of a lens that keeps lines straight. `pinhole` makes it, given what messages call it.
+    fn new(name: String, what: String, pinhole: impl FnOnce(&str) -> Outcome) -> Self {
+        Self {
+            pinhole: pinhole(&what),
+            name,
+            what,
+            lens: None,
+        }
+    }
+
+    /// The same with a lens of this model, if that bends straight lines.
+    fn bent(self, lens: Option<String>) -> Self {
+        Self { lens, ..self }
+    }
+}
+
 /// A camera, and what had to be made of numbers that are none of a camera.
 #[derive(Debug, Clone, PartialEq)]
 struct RepairedCamera {
@@ -57,7 +81,7 @@ impl NamedCamera {
         &self.entry.name
     }
 
-    /// The camera.
+    /// Returns the camera.
     ///
     /// # Errors
     /// [`Error::Format`], which names it, if the file has no camera's numbers for it, or if it has a lens that bends straight lines:
@@ -76,7 +100,7 @@ impl NamedCamera {
         Err(Error::format(&*self.file, message))
     }
 
-    /// The camera as a pinhole: the same focal lengths and principal point, without the distortion of the lens.
+    /// Returns the camera as a pinhole camera: the same focal lengths and principal point, without the distortion of the lens.
     ///
     /// # Errors
     /// [`Error::Format`], which names it, if the file has no camera's numbers for it, or those of a model that is not known.
@@ -87,19 +111,19 @@ impl NamedCamera {
         }
     }
 
-    /// The model of its lens, if that bends straight lines.
+    /// Returns the model of the camera's lens, if it bends straight lines.
     pub fn distortion(&self) -> Option<&str> {
         self.entry.lens.as_deref()
     }
 
-    /// What had to be made of numbers that are none of a camera: rotations that are rounded, matrices that scale, and pictures of
-    /// fractions of a pixel. Each is a clause that says what was done.
+    /// Returns what was repaired: rotations that are rounded, matrices that scale, and picture sizes that are not whole pixels.
+    /// Each is a clause that says what was done.
     pub fn repairs(&self) -> &[String] {
         let repaired = self.entry.pinhole.as_ref();
         repaired.map_or(&[], |repaired| &repaired.repairs)
     }
 
-    /// The same where `place` puts its camera.
+    /// Returns the same entry with the camera that `place` returns for its camera.
     pub fn placed(mut self, place: impl FnOnce(Camera) -> Camera) -> Self {
         if let Ok(repaired) = &mut self.entry.pinhole {
             repaired.camera = place(repaired.camera);
@@ -117,31 +141,67 @@ pub enum ColmapFormat {
     Text,
 }
 
-/// Loads every camera of a 3DGS `cameras.json`, a nerfstudio `transforms.json` or `camera_path.json`, or a COLMAP sparse folder (with
-/// `cameras` and `images`, each `.bin` or `.txt`; a folder that has `sparse/0` does too). JSON files keep their order,
+/// Loads every camera of a 3DGS `cameras.json`, a nerfstudio `transforms.json` or `camera_path.json`, a `settings.json` of
+/// SuperSplat, a `project.opf` of Pix4D, a glTF with cameras, or a COLMAP sparse folder (with `cameras` and `images`, each `.bin` or `.txt`; a folder
+/// that has `sparse/0` does too). JSON files keep their order,
 /// COLMAP's cameras are sorted by picture name. A file with a single camera (see [`load_camera`]) gives that one, and a list
 /// of such cameras, each perhaps with a `"name"`, all of them.
 ///
-/// World coordinates are taken as the file has them. Only the cameras that are asked for have to be usable, see
+/// World coordinates are taken as the file has them, but for those of SuperSplat and glTF, which are turned as scenes are. Only the cameras that are asked for have to be usable, see
 /// [`NamedCamera::camera`].
 ///
 /// # Errors
 /// [`Error::Io`] if something can't be read, [`Error::Format`] if it is none of these.
 pub fn load_cameras(path: &Path) -> Result<Vec<NamedCamera>> {
-    if path.is_dir() {
-        colmap::load(path)
-    } else if let (Some("bin" | "txt"), Some(folder)) =
-        (path.extension().and_then(|e| e.to_str()), path.parent())
-    {
-        // One of the files in the folder was named instead.
-        colmap::load(if folder.as_os_str().is_empty() {
-            Path::new(".")
-        } else {
-            folder
-        })
-    } else {
-        cameras_from_json(&json::read(path, "cameras")?, path)
+    match colmap::folder_of(path) {
+        Some(folder) => colmap::load(folder),
+        None => cameras_from_json(&text_of(path)?, path),
     }
+}
+
+/// The settings of pictures in a file of cameras. Only a `camera_path.json` of nerfstudio has any.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
+pub struct PathSettings {
+    /// The part of the scene that is drawn, in the coordinates of the scene.
+    pub crop: Option<Shape>,
+    /// The background colour, from 0 to 1.
+    pub background: Option<[f32; 3]>,
+    /// Pictures per second of the film.
+    pub fps: Option<f64>,
+}
+
+/// Loads what the file of cameras at `path` says beside these.
+///
+/// # Errors
+/// [`Error::Io`] if the file can't be read, [`Error::Format`] for a path that is damaged, or whose crop is no box.
+pub fn load_path_settings(path: &Path) -> Result<PathSettings> {
+    if colmap::folder_of(path).is_some() {
+        return Ok(PathSettings::default());
+    }
+    let text = text_of(path)?;
+    let text = json::bare(&text);
+    match text.starts_with(b"{") && Members::of(text).has("camera_path") {
+        true => nerfstudio::path_settings(text).map_err(|message| Error::format(path, message)),
+        false => Ok(PathSettings::default()),
+    }
+}
+
+/// The text of a file of cameras: of a `.glb` its JSON.
+fn text_of(path: &Path) -> Result<Vec<u8>> {
+    match gltf::json_of(path)? {
+        Some(text) => Ok(text),
+        None => json::read(path, "cameras"),
+    }
+}
+
+/// Loads the positions of the points of a COLMAP sparse folder, from its `points3D`, `.bin` or `.txt`; `None` for files of
+/// cameras of other kinds.
+///
+/// # Errors
+/// [`Error::Io`] if the file can't be read, [`Error::Format`] if it has no points of COLMAP.
+pub fn load_colmap_points(path: &Path) -> Result<Option<Vec<DVec3>>> {
+    colmap::folder_of(path).map(colmap::points).transpose()
 }
 
 /// Like [`load_cameras`] for the text of a `cameras.json`, a `transforms.json` or a single camera in memory; `name`
@@ -151,13 +211,35 @@ pub fn load_cameras(path: &Path) -> Result<Vec<NamedCamera>> {
 /// [`Error::Format`] if it is none of these.
 pub fn cameras_from_json(json: &[u8], name: &Path) -> Result<Vec<NamedCamera>> {
     let json = json::bare(json);
+    let members = Members::of(json);
+    let has = |member: &str| members.has(member);
     let cameras = match json.first() {
         Some(b'[') if single::is_list(json) => single::parse_list(json),
-        Some(b'[') => inria::parse(json),
-        Some(b'{') if nerfstudio::is_path(json) => nerfstudio::parse_path(json),
-        Some(b'{') if single::is_one(json) => single::parse(json).map(|one| vec![one]),
-        Some(b'{') => nerfstudio::parse(json),
-        _ => Err("this is neither a cameras.json, a transforms.json nor a COLMAP folder; give one of these".into()),
+        Some(b'[')
+            if ["img_name", "position", "rotation", "width"]
+                .into_iter()
+                .any(has) =>
+        {
+            inria::parse(json)
+        }
+        Some(b'{') if has("camera_path") => nerfstudio::parse_path(json),
+        Some(b'{') if has("world_to_camera") || has("fx") && !has("t_00") => {
+            single::parse(json).map(|one| vec![one])
+        }
+        Some(b'{') if has("frames") => nerfstudio::parse(json),
+        Some(b'{') if has("items") && has("format") => return named(opf::load(json, name)?, name),
+        Some(b'{') if has("sensors") && has("cameras") => opf::parse(json),
+        Some(b'{') if has("asset") && !has("root") => gltf::parse(json),
+        Some(b'g') if json.starts_with(gltf::MAGIC) => gltf::parse_binary(json),
+        Some(b'{') if has("animTracks") || has("startMode") => supersplat::parse(json),
+        // A file of none is empty, and a document that is damaged says where.
+        Some(b'[' | b'{') => {
+            json::parse::<serde_json::Value>(json).and_then(|document| match document {
+                serde_json::Value::Array(none) if none.is_empty() => Ok(Vec::new()),
+                _ => Err(others::named(json, &members)),
+            })
+        }
+        _ => Err(others::named(json, &members)),
     };
     named(
         cameras.map_err(|message| Error::format(name, message))?,

@@ -1,11 +1,12 @@
 //! `transforms.json` of nerfstudio and instant-ngp, and `camera_path.json` of nerfstudio's viewer: OpenGL cameras, intrinsics
 //! shared or frame by frame.
 
-use glam::{DMat3, DMat4, DVec3, DVec4};
+use glam::{DMat3, DMat4, DQuat, DVec3, DVec4};
 use serde::Deserialize;
 
 use super::rigid::affine;
-use super::{Entry, Outcome, Parts, Pose};
+use super::{Entry, Outcome, Parts, PathSettings, Pose};
+use crate::clip::Shape;
 use rara_base::error::shortened;
 use rara_base::json;
 
@@ -31,55 +32,33 @@ struct TransformsFrame {
     transform_matrix: Vec<[f64; 4]>,
 }
 
-#[derive(Deserialize, Clone, Default)]
-struct Intrinsics {
-    w: Option<f64>,
-    h: Option<f64>,
-    fl_x: Option<f64>,
-    fl_y: Option<f64>,
-    cx: Option<f64>,
-    cy: Option<f64>,
-    camera_angle_x: Option<f64>,
-    camera_angle_y: Option<f64>,
-    camera_model: Option<String>,
-    k1: Option<f64>,
-    k2: Option<f64>,
-    k3: Option<f64>,
-    k4: Option<f64>,
-    k5: Option<f64>,
-    k6: Option<f64>,
-    p1: Option<f64>,
-    p2: Option<f64>,
-    distortion_params: Option<Vec<f64>>,
-    is_fisheye: Option<bool>,
+/// Defines intrinsics, of which a file may leave out any, by their names and types.
+macro_rules! intrinsics {
+    ($($field:ident: $of:ty,)+) => {
+        #[derive(Deserialize, Clone)]
+        struct Intrinsics {
+            $($field: Option<$of>,)+
+        }
+
+        impl Intrinsics {
+            /// These, and the shared ones where these say nothing.
+            fn or(self, shared: &Self) -> Self {
+                let shared = shared.clone();
+                Self {
+                    $($field: self.$field.or(shared.$field),)+
+                }
+            }
+        }
+    };
+}
+
+intrinsics! {
+    w: f64, h: f64, fl_x: f64, fl_y: f64, cx: f64, cy: f64, camera_angle_x: f64, camera_angle_y: f64,
+    camera_model: String, is_fisheye: bool,
+    k1: f64, k2: f64, k3: f64, k4: f64, k5: f64, k6: f64, p1: f64, p2: f64, distortion_params: Vec<f64>,
 }
 
 impl Intrinsics {
-    fn or(self, shared: &Self) -> Self {
-        let shared = shared.clone();
-        Self {
-            w: self.w.or(shared.w),
-            h: self.h.or(shared.h),
-            fl_x: self.fl_x.or(shared.fl_x),
-            fl_y: self.fl_y.or(shared.fl_y),
-            cx: self.cx.or(shared.cx),
-            cy: self.cy.or(shared.cy),
-            camera_angle_x: self.camera_angle_x.or(shared.camera_angle_x),
-            camera_angle_y: self.camera_angle_y.or(shared.camera_angle_y),
-            camera_model: self.camera_model.or(shared.camera_model),
-            k1: self.k1.or(shared.k1),
-            k2: self.k2.or(shared.k2),
-            k3: self.k3.or(shared.k3),
-            k4: self.k4.or(shared.k4),
-            k5: self.k5.or(shared.k5),
-            k6: self.k6.or(shared.k6),
-            p1: self.p1.or(shared.p1),
-            p2: self.p2.or(shared.p2),
-            distortion_params: self.distortion_params.or(shared.distortion_params),
-            is_fisheye: self.is_fisheye.or(shared.is_fisheye),
-        }
-    }
-
     /// The model of a lens that bends straight lines.
     fn distortion(&self) -> Option<String> {
         let is_fisheye = self.is_fisheye == Some(true);
@@ -186,6 +165,31 @@ struct CameraPath {
     render_width: f64,
     render_height: f64,
     camera_type: Option<String>,
+    fps: Option<f64>,
+    seconds: Option<f64>,
+    crop: Option<Crop>,
+}
+
+/// A box in the scene, outside of which nothing is drawn, and what is drawn there.
+#[derive(Deserialize)]
+struct Crop {
+    crop_center: Option<[f64; 3]>,
+    /// Its sides.
+    crop_scale: Option<[f64; 3]>,
+    /// Turns about x, y and z, the first one first, radians.
+    crop_rot: Option<[f64; 3]>,
+    /// Older files have two corners instead.
+    crop_min: Option<[f64; 3]>,
+    crop_max: Option<[f64; 3]>,
+    crop_bg_color: Option<Rgb>,
+}
+
+/// From 0 to 255.
+#[derive(Deserialize)]
+struct Rgb {
+    r: f64,
+    g: f64,
+    b: f64,
 }
 
 #[derive(Deserialize)]
@@ -194,17 +198,6 @@ struct PathCamera {
     camera_to_world: Vec<f64>,
     /// Vertical, degrees.
     fov: f64,
-}
-
-/// True for JSON with the viewer's list of cameras.
-pub(super) fn is_path(json: &[u8]) -> bool {
-    /// What stands there is looked at later.
-    #[derive(Deserialize)]
-    struct Any {
-        #[serde(rename = "camera_path")]
-        _camera_path: serde::de::IgnoredAny,
-    }
-    json::parse::<Any>(json).is_ok()
 }
 
 pub(super) fn parse_path(json: &[u8]) -> Result<Vec<Entry>, String> {
@@ -219,13 +212,7 @@ pub(super) fn parse_path(json: &[u8]) -> Result<Vec<Entry>, String> {
     let size = (file.render_width, file.render_height);
     let entry = |(number, camera): (usize, PathCamera)| {
         let what = format!("camera {number} of the path");
-        let pinhole = camera.pinhole(size, &what);
-        Entry {
-            name: number.to_string(),
-            what,
-            lens: None,
-            pinhole,
-        }
+        Entry::new(number.to_string(), what, |what| camera.pinhole(size, what))
     };
     Ok(file
         .camera_path
@@ -233,6 +220,47 @@ pub(super) fn parse_path(json: &[u8]) -> Result<Vec<Entry>, String> {
         .enumerate()
         .map(entry)
         .collect())
+}
+
+/// What a path says of its film beside the cameras.
+pub(super) fn path_settings(json: &[u8]) -> Result<PathSettings, String> {
+    let file: CameraPath = json::parse(json)?;
+    let frames = file.camera_path.len() as f64;
+    let fps = file.fps.or(file.seconds.map(|seconds| frames / seconds));
+    let colour = file
+        .crop
+        .as_ref()
+        .and_then(|crop| crop.crop_bg_color.as_ref());
+    let colour =
+        colour.map(|Rgb { r, g, b }| [r, g, b].map(|ink| (ink / 255.0).clamp(0.0, 1.0) as f32));
+    Ok(PathSettings {
+        crop: file.crop.map(|crop| crop.shape()).transpose()?,
+        background: colour,
+        fps: fps.filter(|fps| *fps > 0.0 && fps.is_finite()),
+    })
+}
+
+impl Crop {
+    fn shape(&self) -> Result<Shape, String> {
+        let (centre, sides) = match (
+            self.crop_min.map(DVec3::from),
+            self.crop_max.map(DVec3::from),
+        ) {
+            (Some(min), Some(max)) => (Some((min + max) / 2.0), Some(max - min)),
+            _ => (
+                self.crop_center.map(DVec3::from),
+                self.crop_scale.map(DVec3::from),
+            ),
+        };
+        let (Some(centre), Some(sides)) = (centre, sides) else {
+            return Err("its crop has no crop_center and crop_scale; export the path again".into());
+        };
+        let [x, y, z] = self.crop_rot.unwrap_or_default();
+        let turn =
+            DQuat::from_rotation_z(z) * DQuat::from_rotation_y(y) * DQuat::from_rotation_x(x);
+        let shape = Shape::cuboid(centre, sides / 2.0, turn);
+        shape.map_err(|error| format!("its crop is no box: {error}; export the path again"))
+    }
 }
 
 impl PathCamera {
@@ -262,13 +290,8 @@ pub(super) fn parse(json: &[u8]) -> Result<Vec<Entry>, String> {
         let name = frame.file_path.unwrap_or_else(|| number.to_string());
         let what = format!("frame {number} (`{}`)", shortened(&name));
         let intrinsics = frame.own.or(&file.shared);
-        let pinhole = intrinsics.pinhole(&frame.transform_matrix, &what);
-        Entry {
-            name,
-            what,
-            lens: intrinsics.distortion(),
-            pinhole,
-        }
+        let pinhole = |what: &str| intrinsics.pinhole(&frame.transform_matrix, what);
+        Entry::new(name, what, pinhole).bent(intrinsics.distortion())
     };
     Ok(file.frames.into_iter().enumerate().map(entry).collect())
 }

@@ -2,6 +2,8 @@
 
 use glam::{DMat3, DMat4, DVec3};
 
+use crate::camera::oblique;
+
 /// How oblique axes may be that are taken as they are. [`Camera`](crate::Camera) makes them square.
 const AS_IT_IS: f64 = 1e-3;
 /// How oblique axes are that have been rounded to two decimals.
@@ -76,16 +78,6 @@ pub(super) fn affine(matrix: DMat4) -> Option<DMat4> {
         .map(|[x, y, z, _]| DVec3::new(x, y, z) / last.w);
     let affine = DMat4::from_mat3_translation(DMat3::from_cols(x, y, z), w);
     (is_affine && last.w > 0.0).then_some(affine)
-}
-
-/// How far axes are from unit length and from being square to each other.
-fn oblique(axes: DMat3) -> f64 {
-    let error = axes.transpose() * axes - DMat3::IDENTITY;
-    let error = error.to_cols_array();
-    error.iter().fold(0.0, |a, x| match x.is_nan() {
-        true => f64::INFINITY,
-        false => f64::max(a, x.abs()),
-    })
 }
 
 /// The orthogonal factor of the polar decomposition, by the iteration of Newton and Higham, which doubles its digits each time.

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize, Serializer};
 
 use super::rigid::{self, Rigid};
 use super::{Entry, Outcome, Parts, Pose};
-use crate::camera::{Camera, Projection};
+use crate::camera::{Camera, Projection, oblique};
 use rara_base::error::shortened;
 use rara_base::json;
 
@@ -74,12 +74,6 @@ struct CameraRecord {
     world_to_camera: Option<IgnoredAny>,
 }
 
-/// True for one of our own cameras.
-pub(super) fn is_one(json: &[u8]) -> bool {
-    let record = serde_json::from_slice::<CameraRecord>(json);
-    record.is_ok_and(|record| record.world_to_camera.is_some())
-}
-
 /// True for a list of our own cameras.
 pub(super) fn is_list(json: &[u8]) -> bool {
     let entries = serde_json::from_slice::<Vec<CameraRecord>>(json);
@@ -88,7 +82,8 @@ pub(super) fn is_list(json: &[u8]) -> bool {
 
 pub(super) fn parse(json: &[u8]) -> Result<Entry, String> {
     let camera: SavedCamera = json::parse(json)?;
-    Ok(camera.entry("0".into(), "the camera".into()))
+    let what = "the camera".into();
+    Ok(Entry::new("0".into(), what, |what| camera.camera(what)))
 }
 
 pub(super) fn parse_list(json: &[u8]) -> Result<Vec<Entry>, String> {
@@ -96,27 +91,17 @@ pub(super) fn parse_list(json: &[u8]) -> Result<Vec<Entry>, String> {
     let named = |(number, mut entry): (usize, SavedCamera)| {
         let name = entry.name.take().unwrap_or_else(|| number.to_string());
         let what = format!("camera {number} (`{}`)", shortened(&name));
-        entry.entry(name, what)
+        Entry::new(name, what, |what| entry.camera(what))
     };
     Ok(entries.into_iter().enumerate().map(named).collect())
 }
 
 impl SavedCamera {
-    /// The same under this name, as a list of cameras has it.
+    /// Returns the same camera with this name, for a list of cameras.
     pub fn named(self, name: String) -> Self {
         Self {
             name: Some(name),
             ..self
-        }
-    }
-
-    fn entry(self, name: String, what: String) -> Entry {
-        let pinhole = self.camera(&what);
-        Entry {
-            name,
-            what,
-            lens: None,
-            pinhole,
         }
     }
 
@@ -160,8 +145,7 @@ impl SavedCamera {
             // An eye and axes with all their digits draw the same picture again.
             camera.eye = eye;
             let rotation = DMat3::from_mat4(matrix);
-            let oblique = rotation * rotation.transpose() - DMat3::IDENTITY;
-            if oblique.to_cols_array().iter().all(|v| v.abs() <= ROUNDING) {
+            if oblique(rotation.transpose()) <= ROUNDING {
                 camera.rotation = rotation;
             }
         }

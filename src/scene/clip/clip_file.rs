@@ -15,15 +15,22 @@ use super::{Expression, Plane, Shape};
 use rara_base::error::{Error, Result};
 use rara_base::json;
 
-/// A clip and what its file calls it.
+/// A clip and its name in a file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NamedClip {
-    /// Its name in the file, or its number there, from 0. Several clips may share one.
+    /// The name of the clip in the file, or its number there, from 0. Several clips may have the same name.
     pub name: String,
     /// The clip. One that keeps everything is [`Expression::All`] of nothing.
     pub clip: Expression,
-    /// The layer whose own clip it is; `None` for the clip of all layers that have none.
+    /// The layer that this clip belongs to; `None` for the clip of all layers that have no clip of their own.
     pub layer: Option<String>,
+}
+
+/// True for several clips that have names, of which one is meant. The clips of single layers are none of these.
+pub fn are_alternatives(clips: &[NamedClip]) -> bool {
+    let of_all = clips.iter().filter(|clip| clip.layer.is_none()).count();
+    let mut named = clips.iter().enumerate();
+    of_all > 1 && named.any(|(number, clip)| clip.name != number.to_string())
 }
 
 #[derive(Deserialize)]

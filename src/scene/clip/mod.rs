@@ -18,15 +18,17 @@ mod surface;
 mod surface_kind;
 
 #[cfg(feature = "json")]
+#[doc(hidden)]
+pub use clip_file::are_alternatives;
+#[cfg(feature = "json")]
 pub use clip_file::{NamedClip, clips_from_json, clips_to_json, load_clips};
 pub use expression::Expression;
-pub(crate) use expression::Parser;
 pub use parameter::Parameter;
 pub use plane::Plane;
 pub use quadric::Quadric;
 pub use shape::Shape;
 #[doc(hidden)]
-pub use shape_text::numbers;
+pub use shape_text::{numbers, numbers_of};
 pub use solid::Solid;
 pub use surface::Surface;
 
@@ -34,20 +36,22 @@ use glam::DVec3;
 
 use rara_base::counted::counted;
 use rara_base::error::{Error, Result};
+use rara_base::named;
 
-/// How several surfaces combine.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
-pub enum ClipOp {
-    /// Visible where every surface keeps it (an intersection).
-    #[default]
-    And,
-    /// Visible where any surface keeps it (a union).
-    Or,
+named! {
+    /// How several surfaces combine.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+    pub enum ClipOp {
+        /// A point is visible if every surface keeps it (an intersection).
+        #[default]
+        And = "and",
+        /// A point is visible if at least one surface keeps it (a union).
+        Or = "or",
+    }
 }
 
 impl ClipOp {
-    /// The operation that joins complements: what a union leaves out is what all of its parts leave out.
+    /// Returns the operation that combines complements: the complement of a union is the intersection of the complements.
     #[must_use]
     pub fn dual(self) -> Self {
         match self {
@@ -57,30 +61,28 @@ impl ClipOp {
     }
 }
 
-/// The region that stays visible. It is an intersection or a union of what surfaces keep and of regions that are the same
-/// again; nothing in it means that everything is kept.
+/// The region that stays visible. It is an intersection or a union of the sides that surfaces keep and of further regions of
+/// the same kind. An empty one keeps everything.
 ///
 /// Any expression of `and`, `or` and `not` is such a region, since the complement of an intersection is the union of the
 /// complements, and the complement of a surface is a surface.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Clip {
-    /// The surfaces that bound it.
+    /// The surfaces of the region.
     pub surfaces: Vec<Surface>,
-    /// How they and the parts combine.
+    /// How the surfaces and the parts combine.
     pub op: ClipOp,
     /// The regions that are combined with the surfaces. None of them is empty.
     pub parts: Vec<Clip>,
 }
 
 impl Clip {
-    /// The surfaces that a flat list may have to be weighed all together, whatever a splat is cut by. In larger regions, and
-    /// in those with parts or quadrics, a splat is weighed by the eight surfaces
-    /// that cut it nearest its centre, and is on the side of its centre of all others.
-    pub const MAX_SURFACES: usize = 32;
-    /// How deep parts may be within parts.
+    /// The most surfaces of a region and its parts together.
+    pub const MAX_SURFACES: usize = 1 << 16;
+    /// The most levels of parts within parts.
     pub const MAX_DEPTH: usize = 64;
 
-    /// The clip of these surfaces.
+    /// Makes a clip of surfaces.
     ///
     /// ```
     /// # use rara_scene as rara;
@@ -98,7 +100,8 @@ impl Clip {
         }
     }
 
-    /// The region that regions make together: what all of them keep, or what any of them keeps. A single one is itself.
+    /// Combines regions into one: it keeps what all of them keep, or what any of them keeps. A single region is returned as it
+    /// is.
     ///
     /// ```
     /// # use rara_scene as rara;
@@ -160,10 +163,11 @@ impl Clip {
                 .map(|sum| sum + clip.surfaces.len())
         }
         match count(self, 0) {
-            Some(count) if count <= 1 << 16 => Ok(()),
+            Some(count) if count <= Self::MAX_SURFACES => Ok(()),
             Some(count) => Err(Error::Invalid(format!(
-                "a clip of {} is beyond the 65536 that one may have; use fewer",
-                counted(count, "surface")
+                "a clip of {} is beyond the {} that one may have; use fewer",
+                counted(count, "surface"),
+                Self::MAX_SURFACES
             ))),
             None => Err(Error::Invalid(format!(
                 "a clip with an empty part, or with parts within parts beyond {} levels, means nothing; leave such parts out",
@@ -176,7 +180,7 @@ impl Clip {
     #[doc(hidden)]
     pub fn is_general(&self) -> bool {
         let bends = self.surfaces.iter().any(|s| s.as_plane().is_none());
-        !self.is_flat() || bends || self.surfaces.len() > Self::MAX_SURFACES
+        !self.is_flat() || bends
     }
 
     /// True when the region keeps a point. A surface's own points are kept.
@@ -190,8 +194,8 @@ impl Clip {
             }
     }
 
-    /// The region that keeps what this one does not. Nothing is left of a region that keeps everything; as no region is
-    /// empty, that is everything again.
+    /// Returns the region that keeps what this one does not. The complement of a region that keeps everything would be empty;
+    /// as no region can be empty, it is everything again.
     #[must_use]
     pub fn complement(&self) -> Self {
         Self {

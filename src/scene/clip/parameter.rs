@@ -8,7 +8,7 @@ use rara_base::error::Result;
 /// Numbers of a [`Solid`](super::Solid) that belong together, by what they mean. Lengths are world units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Parameter {
-    /// A plane, of which the solid is on the side that it keeps.
+    /// A plane; the solid is on the side that the plane keeps.
     Plane(Plane),
     /// A point.
     Point(DVec3),

@@ -35,7 +35,7 @@ impl Plane {
         let offset = offset / largest / length;
         if !offset.is_finite() {
             return Err(Error::Invalid(
-                "the clip plane's distance overflows once its normal is made a unit vector".into(),
+                "the clip plane's distance overflows when its normal is made a unit vector; give a longer normal or a smaller distance".into(),
             ));
         }
         Ok(Self {
@@ -68,7 +68,7 @@ impl Plane {
         self.normal.dot(point) + self.offset
     }
 
-    /// The same plane as a scene with this placement sees it.
+    /// Returns the plane in the space of a scene that has this placement.
     #[must_use]
     pub fn in_scene(&self, placement: &Placement) -> Self {
         if *placement == Placement::IDENTITY {

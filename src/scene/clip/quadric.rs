@@ -20,7 +20,7 @@ pub struct Quadric {
 }
 
 impl Quadric {
-    /// The inside of a sphere.
+    /// Makes the inside of a sphere.
     ///
     /// # Errors
     /// [`Error::Invalid`] for a centre that is not finite and a radius that is not above zero.
@@ -40,7 +40,7 @@ impl Quadric {
         Self::centred(centre, axes, -shares, scale, radii.min_element())
     }
 
-    /// The inside of an endless cylinder around the line through two points.
+    /// Makes the inside of an endless cylinder around the line through two points.
     ///
     /// # Errors
     /// [`Error::Invalid`] for numbers that are not finite, a radius that is not above zero and points that are one.
@@ -91,27 +91,27 @@ impl Quadric {
         })
     }
 
-    /// The point that its numbers are relative to.
+    /// Returns the point that the numbers of the quadric are relative to.
     pub fn anchor(&self) -> DVec3 {
         self.anchor
     }
 
-    /// The factors of the squares and products of coordinates, symmetric, 1/world units.
+    /// Returns the symmetric matrix of the factors of the squares and products of coordinates, in 1/world units.
     pub fn matrix(&self) -> DMat3 {
         self.matrix
     }
 
-    /// The gradient at the anchor, no units.
+    /// Returns the gradient at the anchor, which has no unit.
     pub fn linear(&self) -> DVec3 {
         self.linear
     }
 
-    /// The value at the anchor, world units.
+    /// Returns the value at the anchor, in world units.
     pub fn constant(&self) -> f64 {
         self.constant
     }
 
-    /// The quadric that keeps the other side.
+    /// Returns the quadric that keeps the other side.
     #[must_use]
     pub fn flipped(&self) -> Self {
         Self {
@@ -122,14 +122,14 @@ impl Quadric {
         }
     }
 
-    /// The function of a point, which is positive on the visible side. Near the surface it is of the order of the distance,
-    /// world units.
+    /// Returns the value of the function at a point, which is positive on the visible side. Near the surface it is about the
+    /// distance, in world units.
     pub fn distance(&self, point: DVec3) -> f64 {
         let p = point - self.anchor;
         self.constant + p.dot(self.linear + self.matrix * p)
     }
 
-    /// Its gradient at a point.
+    /// Returns the gradient of the quadric's function at a point.
     pub fn gradient(&self, point: DVec3) -> DVec3 {
         self.linear + 2.0 * (self.matrix * (point - self.anchor))
     }
@@ -160,7 +160,7 @@ impl Quadric {
         }
     }
 
-    /// The same quadric as a scene with this placement sees it.
+    /// Returns the quadric in the space of a scene that has this placement.
     #[must_use]
     pub fn in_scene(&self, placement: &Placement) -> Self {
         if *placement == Placement::IDENTITY {
@@ -226,44 +226,4 @@ impl SurfaceKind for Quadric {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_quadric_measures_distances_near_its_surface() {
-        let centre = DVec3::new(1.0, -2.0, 0.5);
-        let sphere = Quadric::sphere(centre, 3.0).unwrap();
-        let direction = DVec3::new(2.0, 1.0, -2.0) / 3.0;
-        for away in [-1e-3, 0.0, 1e-3] {
-            let distance = sphere.distance(centre + (3.0 + away) * direction);
-            assert!((distance + away).abs() < 1e-6, "{distance}");
-        }
-        let cylinder = Quadric::cylinder(centre, centre + direction, 0.5).unwrap();
-        let side = centre + 7.0 * direction + 0.5 * direction.any_orthonormal_vector();
-        assert!(cylinder.distance(side).abs() < 1e-12);
-        let cone = Quadric::cone(centre, centre + 2.0 * direction, 1.0).unwrap();
-        let side = centre + direction + 0.5 * direction.any_orthonormal_vector();
-        assert!(cone.distance(side).abs() < 1e-12 && cone.distance(centre + direction) > 0.0);
-    }
-
-    #[test]
-    fn an_anchor_changes_numbers_and_not_the_surface() {
-        let huge = Quadric::sphere(DVec3::new(0.0, 0.0, 1e6), 1e6).unwrap();
-        let near = huge.anchored(DVec3::new(3.0, 1.0, -2.0));
-        for point in [DVec3::ZERO, DVec3::new(1.0, 2.0, 3.0)] {
-            assert!((huge.distance(point) - near.distance(point)).abs() < 1e-9);
-        }
-        assert!(near.linear().distance(DVec3::Z) < 1e-5);
-    }
-
-    #[test]
-    fn what_has_no_size_is_refused() {
-        assert!(Quadric::sphere(DVec3::ZERO, 0.0).is_err());
-        assert!(Quadric::sphere(DVec3::ZERO, f64::NAN).is_err());
-        assert!(Quadric::sphere(DVec3::NAN, 1.0).is_err());
-        assert!(Quadric::cylinder(DVec3::ONE, DVec3::ONE, 1.0).is_err());
-        assert!(Quadric::cone(DVec3::ZERO, DVec3::X, -1.0).is_err());
-        let none = DQuat::from_xyzw(0.0, 0.0, 0.0, 0.0);
-        assert!(Quadric::ellipsoid(DVec3::ZERO, DVec3::ONE, none).is_err());
-    }
-}
+mod tests;

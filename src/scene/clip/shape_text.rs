@@ -5,6 +5,9 @@ use std::str::FromStr;
 
 use super::Shape;
 use super::solid::{KINDS, Kind};
+use crate::axis::Axis;
+use crate::bounds::Bounds;
+use crate::text_reader::{joined, number};
 use rara_base::error::{Error, Result, shortened};
 
 /// The kind of solids of this name.
@@ -22,6 +25,14 @@ impl FromStr for Shape {
     type Err = Error;
 
     fn from_str(text: &str) -> Result<Self> {
+        Self::read(text, None).map(|(read, _)| read)
+    }
+}
+
+impl Shape {
+    /// Reads a text. Where bounds are given, a plane or a slab may lie at shares of them, `plane:AXIS=SHARE%` or
+    /// `slab:AXIS=FROM%..TO%`; returns true beside the shape if it does.
+    pub(crate) fn read(text: &str, bounds: Option<&Bounds>) -> Result<(Self, bool)> {
         let (bare, outside) = match text.trim().strip_prefix('!') {
             Some(bare) => (bare, true),
             None => (text.trim(), false),
@@ -40,19 +51,58 @@ impl FromStr for Shape {
                 names()
             ))
         })?;
-        let shape = Self::new(kind.solid(&self::numbers(numbers)?)?)?;
-        Ok(if outside { shape.complement() } else { shape })
+        let (numbers, at_shares) = match (bounds, numbers.split_once('=')) {
+            (Some(bounds), Some((axis, shares))) if ["plane", "slab"].contains(&name) => {
+                let numbers = at_shares(name, axis, shares, bounds);
+                let numbers =
+                    numbers.map_err(|what| Error::Invalid(format!("'{bare}': {what}")))?;
+                (numbers, true)
+            }
+            _ => (self::numbers(numbers)?, false),
+        };
+        let shape = Self::new(kind.solid(&numbers)?)?;
+        let shape = if outside { shape.complement() } else { shape };
+        Ok((shape, at_shares))
     }
+}
+
+/// The numbers of a plane, or of a slab, across an axis at shares of the bounds.
+fn at_shares(
+    name: &str,
+    axis: &str,
+    shares: &str,
+    bounds: &Bounds,
+) -> std::result::Result<Vec<f64>, &'static str> {
+    // The other side is the outside of the shape.
+    let axis = Axis::parse(axis.trim()).filter(|_| !axis.contains('!'));
+    let along = axis
+        .ok_or("expected one of the axes x, y, z, sagittal, coronal and axial")?
+        .along;
+    let (low, high) = (bounds.min.dot(along), bounds.max.dot(along));
+    let position = |text: &str| {
+        let share = text.trim().strip_suffix('%').and_then(|n| number(n).ok());
+        share
+            .map(|share| low + (high - low) * share / 100.0)
+            .ok_or("expected shares in percent, as in plane:x=40% or slab:x=40%..60%")
+    };
+    let place = match (name, shares.split_once("..")) {
+        ("plane", None) => vec![-position(shares)?],
+        ("plane", Some(_)) => return Err("a plane lies at one share; a slab lies between two"),
+        (_, None) => return Err("a slab lies between two shares, as in slab:x=40%..60%"),
+        (_, Some((from, to))) => match (position(from)?, position(to)?) {
+            (from, to) if from < to => vec![-from, to - from],
+            _ => return Err("the first share has to be the smaller one"),
+        },
+    };
+    Ok(along.to_array().into_iter().chain(place).collect())
 }
 
 /// The text that it parses from.
 impl fmt::Display for Shape {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let solid = self.solid();
-        let numbers = solid.numbers().into_iter().map(|number| number.to_string());
-        let numbers: Vec<String> = numbers.collect();
-        let not = if self.is_outside() { "!" } else { "" };
-        write!(f, "{not}{}:{}", solid.name(), numbers.join(","))
+        let (solid, not) = (self.solid(), if self.is_outside() { "!" } else { "" });
+        let numbers = joined(&solid.numbers(), ",", f64::to_string);
+        write!(f, "{not}{}:{numbers}", solid.name())
     }
 }
 
@@ -61,15 +111,21 @@ impl fmt::Display for Shape {
 /// # Errors
 /// [`Error::Invalid`] for anything else.
 pub fn numbers(text: &str) -> Result<Vec<f64>> {
-    text.split(',')
-        .map(|part| match part.trim().parse::<f64>() {
-            Ok(number) if number.is_finite() => Ok(number),
-            _ => Err(Error::Invalid(format!(
-                "'{}' is not a finite number",
-                shortened(part)
-            ))),
-        })
-        .collect()
+    text.split(',').map(number).collect()
+}
+
+/// So many of them.
+///
+/// # Errors
+/// [`Error::Invalid`] for anything else.
+pub fn numbers_of<const COUNT: usize>(text: &str) -> Result<[f64; COUNT]> {
+    let list = numbers(text)?;
+    let found = list.len();
+    list.try_into().map_err(|_| {
+        Error::Invalid(format!(
+            "expected {COUNT} numbers with commas between them, found {found}"
+        ))
+    })
 }
 
 #[cfg(test)]

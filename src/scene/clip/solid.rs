@@ -58,9 +58,9 @@ pub enum Solid {
         /// Its radius.
         radius: f64,
     },
-    /// All points within a distance of a stretch of a line.
+    /// All points within a distance of a line segment.
     Capsule {
-        /// One end of the stretch.
+        /// One end of the segment.
         from: DVec3,
         /// The other end.
         to: DVec3,
@@ -160,49 +160,49 @@ macro_rules! solids {
 solids! {
     Plane { plane: Plane } => {
         name: "plane", numbers: "normal, distance",
-        usage: "plane:nx,ny,nz,d keeps n.x + d >= 0.",
+        usage: "plane:nx,ny,nz,d keeps the points p with dot(n, p) + d >= 0.",
         region: Ok(all_of([plane])),
         outline: |pen| pen.plane(&plane),
     }
     Slab { plane: Plane, thickness: Size } => {
         name: "slab", numbers: "normal, distance, thickness",
-        usage: "slab:nx,ny,nz,d,thickness begins at such a plane.",
+        usage: "slab:nx,ny,nz,d,thickness keeps the part of this side that is within a thickness of the plane.",
         region: slab(plane, thickness),
         outline: |pen| pen.slab(&plane, thickness),
     }
     Cuboid { centre: Point, half: Sizes "half size", rotation: Rotation } => {
         name: "box", numbers: "centre, half sizes",
-        usage: "box:cx,cy,cz,hx,hy,hz[,qw,qx,qy,qz] has a centre, half sizes and a rotation.",
+        usage: "box:cx,cy,cz,hx,hy,hz[,qw,qx,qy,qz] has a centre c, half sizes h and a rotation q.",
         region: cuboid(centre, half, rotation),
         outline: |pen| pen.cuboid(centre, half, rotation),
     }
     Sphere { centre: Point, radius: Size } => {
         name: "sphere", numbers: "centre, radius",
-        usage: "sphere:cx,cy,cz,r.",
+        usage: "sphere:cx,cy,cz,r has a centre c and a radius r.",
         region: Ok(all_of([Quadric::sphere(centre, radius)?])),
         outline: |pen| pen.ellipsoid(centre, DVec3::splat(radius), DQuat::IDENTITY),
     }
     Ellipsoid { centre: Point, radii: Sizes, rotation: Rotation } => {
         name: "ellipsoid", numbers: "centre, radii",
-        usage: "ellipsoid:cx,cy,cz,rx,ry,rz[,qw,qx,qy,qz].",
+        usage: "ellipsoid:cx,cy,cz,rx,ry,rz[,qw,qx,qy,qz] has a centre c, radii r and a rotation q.",
         region: Ok(all_of([Quadric::ellipsoid(centre, radii, rotation)?])),
         outline: |pen| pen.ellipsoid(centre, radii, rotation),
     }
     Cylinder { from: Point, to: Point, radius: Size } => {
         name: "cylinder", numbers: "two ends of the axis, radius",
-        usage: "cylinder:ax,ay,az,bx,by,bz,r lies between two discs.",
+        usage: "cylinder:ax,ay,az,bx,by,bz,r lies between discs of radius r around a and b.",
         region: between(Quadric::cylinder(from, to, radius)?, from, to),
         outline: |pen| pen.side(&Tube::new(from, to, radius)),
     }
     Capsule { from: Point, to: Point, radius: Size } => {
         name: "capsule", numbers: "two ends of the axis, radius",
-        usage: "capsule:ax,ay,az,bx,by,bz,r is within r of a stretch of a line.",
+        usage: "capsule:ax,ay,az,bx,by,bz,r is all points within r of the line segment from a to b.",
         region: capsule(from, to, radius),
         outline: |pen| pen.capsule(&Tube::new(from, to, radius)),
     }
     Cone { apex: Point "tip", base: Point, radius: Size } => {
         name: "cone", numbers: "apex, centre of the base, radius of the base",
-        usage: "cone:ax,ay,az,bx,by,bz,r has its tip at a and a disc around b.",
+        usage: "cone:ax,ay,az,bx,by,bz,r has its tip at a and a disc of radius r around b.",
         region: between(Quadric::cone(apex, base, radius)?, apex, base),
         outline: |pen| pen.cone(&Tube::new(base, apex, radius)),
     }
@@ -214,7 +214,7 @@ impl Solid {
         self.kind().name
     }
 
-    /// Its parameters in the order of its text, and what people call them.
+    /// Returns the parameters in the order of the shape's text, each with a name for people.
     pub fn parameters(&self) -> Vec<(&'static str, Parameter)> {
         let names = self.kind().parameters.iter().map(|(_, name, _)| *name);
         names.zip(self.values()).collect()
@@ -239,7 +239,12 @@ impl Kind {
     pub(super) fn with(&self, values: impl Iterator<Item = Result<Parameter>>) -> Result<Solid> {
         let values: Vec<_> = values.collect::<Result<_>>()?;
         let solid = (self.make)(&values);
-        solid.ok_or_else(|| Error::Invalid(format!("a {} has other parameters", self.name)))
+        solid.ok_or_else(|| {
+            Error::Invalid(format!(
+                "these are not the parameters of a {}; give as many, of the same kinds, as it has",
+                self.name
+            ))
+        })
     }
 
     /// The solid that is made of the numbers of its text.

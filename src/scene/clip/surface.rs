@@ -47,7 +47,7 @@ impl Surface {
         each_surface!(self, surface => surface.gradient(point))
     }
 
-    /// The same surface as a scene with this placement sees it.
+    /// Returns the surface in the space of a scene that has this placement.
     #[must_use]
     pub fn in_scene(&self, placement: &Placement) -> Self {
         each_surface!(self, surface => surface.in_scene(placement).into())

@@ -3,7 +3,7 @@
 use std::io::{self, Read};
 
 use flate2::bufread::GzDecoder;
-use ruzstd::decoding::StreamingDecoder;
+use structured_zstd::decoding::StreamingDecoder;
 
 use super::Failure;
 use rara_base::counted::counted;
@@ -62,7 +62,7 @@ pub(super) fn zstd(stream: &[u8], size: u64, what: &str) -> Result<Vec<u8>, Fail
     if size == 0 {
         return Ok(Vec::new());
     }
-    let decoder = StreamingDecoder::new(stream).map_err(|error| damaged("zstd", &error))?;
+    let decoder = StreamingDecoder::new(stream);
     exactly(decoder, size, "zstd", what)
 }
 

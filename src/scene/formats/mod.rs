@@ -1,115 +1,43 @@
-//! Formats beside 3DGS `.ply`, one file each. All are read from the whole file in memory, since most are compressed; no
-//! count in a file is believed before there are bytes for it.
+//! Finds the format of a file and reads it. Formats beside 3DGS `.ply` have a file each here. They are read from the whole
+//! file in memory, since most are compressed; no count in a file is believed before there are bytes for it.
 
 mod bytes;
+mod files;
 mod gltf;
 mod inflate;
 mod ksplat;
+mod output;
+mod project;
 mod sog;
 mod splat;
 mod spz;
+mod unread;
 mod wrapped;
 mod write;
 
-use std::io::{Cursor, Read};
+use std::io::{Read, SeekFrom};
 use std::path::Path;
 
-use glam::DAffine3;
+use serde_json::Value;
 
+use self::files::Archive;
+pub(super) use self::files::Files;
+use self::output::FormatOutput;
+pub use self::project::{FileLayer, file_layers, load_layer};
 pub(super) use self::write::WRITERS;
-use super::assemble::{Assembler, room};
+use super::assemble::room;
 use super::failure::Failure;
-use super::load::{Input, Progress, load_from_with};
-use super::{Annotations, Format, Gaussians, LoadReport, Property, SH_0, SceneFile};
-use crate::placement::Placement;
+use super::input::{ALL, Input, LoadOptions, Progress};
+use super::scene_file::SceneFile;
+use super::{Format, Property, SH_0, ply};
 use rara_base::counted::counted;
-use rara_base::error::{Error, Result};
+use rara_base::error::{Error, Result, shortened};
 
-/// What a reader makes of a file.
-#[derive(Default)]
-struct FormatOutput {
-    gaussians: Gaussians,
-    report: LoadReport,
-    /// The file's elements, those included that were dropped.
-    elements: u64,
-    /// The numbers of those that were dropped or not asked for, which ascend.
-    dropped: Vec<u64>,
-    annotations: Option<Annotations>,
-}
+/// Bytes that a format is recognised by, at most.
+const START: usize = 4096;
 
-impl From<Assembler> for FormatOutput {
-    fn from(assembler: Assembler) -> Self {
-        let (elements, dropped) = (assembler.rows(), assembler.dropped.clone());
-        let (loaded, _) = assembler.finish();
-        Self {
-            gaussians: loaded.gaussians,
-            report: loaded.report,
-            elements,
-            dropped,
-            annotations: None,
-        }
-    }
-}
-
-impl FormatOutput {
-    /// Appends what another part of the file has become.
-    fn append(&mut self, other: Self) -> std::result::Result<(), Failure> {
-        let before = self.elements;
-        let differs = self.gaussians.training() != other.gaussians.training();
-        if differs && !self.gaussians.is_empty() && !other.gaussians.is_empty() {
-            self.report.note(format!(
-                "some parts were trained in other ways; all are drawn {}, as the first is",
-                self.gaussians.training()
-            ));
-        }
-        if self.gaussians.is_empty() {
-            self.gaussians = other.gaussians; // most files have one part
-        } else {
-            self.gaussians
-                .try_append(&other.gaussians)
-                .ok_or_else(|| Failure::Memory(counted(other.elements + before, "Gaussian")))?;
-        }
-        self.report.append(other.report, before);
-        self.elements += other.elements;
-        let dropped = other.dropped.iter().map(|element| before + element);
-        self.dropped.extend(dropped);
-        Ok(())
-    }
-
-    /// The element that each Gaussian was.
-    fn numbers(&self) -> impl Iterator<Item = u64> {
-        let mut dropped = self.dropped.iter().peekable();
-        (0..self.elements).filter(move |element| dropped.next_if(|next| *next == element).is_none())
-    }
-
-    /// Places the Gaussians; what cannot be held there is dropped.
-    fn place(&mut self, placement: &Placement) {
-        let lost = self.gaussians.place(placement);
-        self.drop_lost(lost);
-    }
-
-    /// Applies a transform that is no placement; what cannot be held where it leads is dropped.
-    fn transform(&mut self, transform: &DAffine3) {
-        let lost = self.gaussians.transform(transform);
-        self.drop_lost(lost);
-    }
-
-    /// Drops the Gaussians of these numbers, which are gone.
-    fn drop_lost(&mut self, lost: Vec<u32>) {
-        if lost.is_empty() {
-            return;
-        }
-        let numbers: Vec<u64> = self.numbers().collect();
-        for index in lost {
-            let element = numbers[index as usize];
-            self.dropped.push(element);
-            self.report.drop_element(element, || {
-                "it is beyond single precision where it is placed".into()
-            });
-        }
-        self.dropped.sort_unstable();
-    }
-}
+/// The names of what describes a SOG scene that is not packed, of one level of detail and of several.
+pub(super) const SOG_DOCUMENTS: [&str; 2] = ["meta.json", "lod-meta.json"];
 
 /// The coefficient of degree 0 that shows a colour channel.
 fn colour(byte: u8) -> f64 {
@@ -123,138 +51,199 @@ type Outcome = std::result::Result<(FormatOutput, Format), Failure>;
 struct Reader(
     /// Whether a file is of the format, by its first bytes and its size.
     fn(&[u8], u64) -> bool,
-    /// What is made of a whole file, with the folder of those that it may name.
-    fn(&[u8], Option<&Path>) -> Outcome,
+    /// What is made of a whole file, with those that it may name and the properties that are asked for.
+    fn(&[u8], Files<'_>, &[&str]) -> Outcome,
 );
 
-/// The readers, of which the first whose format a file is of reads it.
-const READERS: [Reader; 6] = [
+/// The readers of whole files. The first one whose format a file is of reads it.
+static READERS: [Reader; 6] = [
     Reader(
         |start, _| matches!(start, [0x1f, 0x8b, ..] | [b'N', b'G', b'S', b'P', ..]),
-        |bytes, _| Ok((spz::read(bytes, true)?, Format::Spz)),
+        |bytes, _, _| Ok((spz::read(bytes, true)?, Format::Spz)),
     ),
-    Reader(
-        |start, _| matches!(start, [b'P', b'K', 3 | 5, 4 | 6, ..]),
-        |bytes, _| Ok((sog::read_archive(bytes)?, Format::Sog)),
-    ),
+    Reader(|start, _| Archive::is(start), read_archive),
     Reader(
         |start, _| start.starts_with(b"glTF"),
-        |bytes, folder| Ok((gltf::read_binary(bytes, folder)?, Format::Gltf)),
+        |bytes, files, asked| Ok((gltf::read_binary(bytes, files, asked)?, Format::Gltf)),
     ),
     Reader(
         |start, _| bare(start).trim_ascii_start().starts_with(b"{"),
         read_json,
     ),
-    Reader(ksplat::is, |bytes, _| {
+    Reader(ksplat::is, |bytes, _, _| {
         Ok((ksplat::read(bytes)?, Format::Ksplat))
     }),
-    Reader(splat::is, |bytes, _| {
+    Reader(splat::is, |bytes, _, _| {
         Ok((splat::read(bytes)?, Format::Splat))
     }),
 ];
 
-/// What a file is that none of the formats reads, and what to do about it.
-fn unknown(start: &[u8]) -> String {
-    let guess = match start {
-        [] => "it is empty",
-        [b'P', b'X', b'R', b'-', ..] | [b'#', b'u', b's', b'd', b'a', ..] => "it is a USD scene",
-        [b'L', b'A', b'S', b'F', ..] => "it is a LAS point cloud",
-        [0x28, 0xb5, 0x2f, 0xfd, ..] => "it is compressed with zstd",
-        [b'R', b'A', b'D', b'0', ..] => "it is a .rad scene of Spark",
-        [0x89, b'H', b'D', b'F', ..] => "it is an HDF5 file, perhaps a checkpoint of a trainer",
-        [b'R', b'I', b'F', b'F', ..] => {
-            "it is a WebP picture; give the meta.json or the folder that it belongs to"
+/// Reads a scene, which may name these files.
+pub(super) fn read(
+    input: Input<'_>,
+    files: Files<'_>,
+    progress: &mut dyn FnMut(u64, u64),
+) -> Result<(SceneFile, Vec<Property>)> {
+    let (source, name) = (&mut *input.source, input.name);
+    let total = source.seek(SeekFrom::End(0)).map_err(Error::io(name))?;
+    source.rewind().map_err(Error::io(name))?;
+    let mut start = Vec::new();
+    let mut beginning = source.take(START as u64);
+    beginning.read_to_end(&mut start).map_err(Error::io(name))?;
+    input.source.rewind().map_err(Error::io(name))?;
+    let mut progress = Progress::new(total, progress);
+    let (mut loaded, properties) = match is_ply(&start) {
+        true => ply::read(input, &mut progress)?,
+        false => {
+            reader_of(&start, total).map_err(|what| Error::format(name, what))?;
+            let read = read_whole(input, files, total);
+            read.map_err(|failure| failure.error_in(name))?
         }
-        [b'[', ..] => "it is a JSON list, perhaps of cameras",
-        _ => "its first bytes are those of none",
     };
-    format!(
-        "this is no scene of a format that is read, {guess}; {} are: convert it to one of these, for example with \
-         splat-transform",
-        Format::readable()
-    )
+    loaded.says_origin();
+    progress.left(0);
+    Ok((loaded, properties))
 }
 
-/// Reads a file that is no PLY and begins like this.
-pub(super) fn read(
-    start: &[u8],
+/// Reads a file that is no PLY, or the scene that such a file wraps.
+fn read_whole(
     input: Input<'_>,
-    progress: &mut Progress<'_>,
-) -> Result<(SceneFile, Vec<Property>)> {
-    let Input { source, name, .. } = input;
-    let total = progress.total();
-    let reader = READERS.iter().find(|Reader(is, _)| is(start, total));
-    let Reader(_, read) = reader.ok_or_else(|| Error::format(name, unknown(start)))?;
+    files: Files<'_>,
+    total: u64,
+) -> std::result::Result<(SceneFile, Vec<Property>), Failure> {
+    let Input {
+        source,
+        name,
+        options,
+    } = input;
     let mut bytes = Vec::new();
     let room = usize::try_from(total).is_ok_and(|total| bytes.try_reserve_exact(total).is_ok());
     if !room {
-        return Err(Failure::Memory(format!("its {}", counted(total, "byte"))).error_in(name));
+        return Err(Failure::Memory(format!("its {}", counted(total, "byte"))));
     }
-    source
-        .take(total)
-        .read_to_end(&mut bytes)
-        .map_err(Error::io(name))?;
-    if let Some(scene) = wrapped::scene(&bytes).map_err(|failure| failure.error_in(name))? {
+    source.take(total).read_to_end(&mut bytes)?;
+    if let Some(scene) = wrapped::decompressed(&bytes)? {
         drop(bytes);
-        return read_wrapped(&scene, name, input.properties);
+        return read_bytes(&scene, name, files, options);
     }
-    let read = read(&bytes, input.folder);
-    let (made, format) = read.map_err(|failure| failure.error_in(name))?;
-    if let Some(property) = input.properties.first() {
-        return Err(Error::format(
-            name,
-            format!(
-                "a {format} file has no property `{}` beside what a Gaussian is made of; only 3DGS .ply files have such",
-                rara_base::error::shortened(property)
-            ),
-        ));
+    if Archive::is(&bytes) {
+        let archive = Archive::open(&bytes)?;
+        if let Some((scene, files)) = wrapped::unpacked(&archive)? {
+            return read_bytes(&scene, name, files, options);
+        }
     }
-    let loaded = SceneFile {
+    read_bytes(&bytes, name, files, options)
+}
+
+/// Reads a scene that is in memory, and is not wrapped.
+fn read_bytes(
+    bytes: &[u8],
+    name: &Path,
+    files: Files<'_>,
+    options: LoadOptions<'_>,
+) -> std::result::Result<(SceneFile, Vec<Property>), Failure> {
+    let (start, total) = (&bytes[..bytes.len().min(START)], bytes.len() as u64);
+    if is_ply(start) {
+        return Ok(ply::read_bytes(bytes, name, options)?);
+    }
+    let Reader(_, read) = reader_of(start, total)?;
+    let (made, format) = read(bytes, files, options.properties)?;
+    let has = |asked: &str| made.properties.iter().any(|own| own.name == asked);
+    let mut asked = options.properties.iter();
+    if let Some(property) = asked.find(|asked| **asked != ALL && !has(asked)) {
+        let others = match format {
+            Format::Gltf => "the notes on it name those that it has",
+            _ => "only 3DGS .ply files and glTF have such",
+        };
+        return Err(Failure::Format(format!(
+            "this {format} file has no property `{}` beside what a Gaussian is made of; {others}",
+            shortened(property)
+        )));
+    }
+    let mut loaded = SceneFile {
         // Writers that know nothing of it leave the flag of their format unset.
         antialiased: made.gaussians.is_antialiased().then_some(true),
         gaussians: made.gaussians,
         report: made.report,
         format,
         annotations: made.annotations,
+        others: made.others,
+        up: None,
     };
-    Ok((loaded, Vec::new()))
+    if options.activated(false, false) != options {
+        let note = "only a plain .ply is read as opacities or scales that are activated; this format says itself how it has them";
+        loaded.report.note(note.into());
+    }
+    Ok((loaded, made.properties))
 }
 
-/// Reads a scene that another file wraps, which wraps no other.
-fn read_wrapped(
-    scene: &[u8],
-    name: &Path,
-    properties: &[&str],
-) -> Result<(SceneFile, Vec<Property>)> {
-    let again = wrapped::scene(scene).map_err(|failure| failure.error_in(name))?;
-    if again.is_some() {
-        return Err(Error::format(
-            name,
-            "it is compressed twice; decompress it once",
-        ));
+/// True for the first bytes of a PLY.
+fn is_ply(start: &[u8]) -> bool {
+    start.starts_with(b"ply")
+}
+
+/// The reader of a file that is no PLY, or what is wrong with one that no reader knows.
+fn reader_of(start: &[u8], total: u64) -> std::result::Result<&'static Reader, String> {
+    let reader = READERS.iter().find(|Reader(is, _)| is(start, total));
+    reader.ok_or_else(|| unread::file(start, total))
+}
+
+/// An archive whose files are one scene together.
+fn read_archive(bytes: &[u8], _: Files<'_>, asked: &[&str]) -> Outcome {
+    let archive = Archive::open(bytes)?;
+    match wrapped::description(&archive) {
+        Some(name) => {
+            let (document, files) = archive.document(name)?;
+            read_document(&document, files, asked)
+        }
+        None => Err(unread::archive(&archive).into()),
     }
-    load_from_with(Cursor::new(scene), name, properties, &mut |_, _| ())
 }
 
 /// JSON of any of the formats that are JSON.
-fn read_json(bytes: &[u8], folder: Option<&Path>) -> Outcome {
-    let document = json(bytes)?;
+fn read_json(bytes: &[u8], files: Files<'_>, asked: &[&str]) -> Outcome {
+    read_document(&json(bytes)?, files, asked)
+}
+
+fn read_document(document: &Value, files: Files<'_>, asked: &[&str]) -> Outcome {
     let has = |key: &str| document.get(key).is_some();
     if has("means") {
-        return Ok((sog::read_folder(&document, folder)?, Format::Sog));
+        return Ok((sog::read(document, files)?, Format::Sog));
     }
     if has("tree") && has("filenames") {
-        return Ok((sog::read_streamed(&document, folder)?, Format::StreamedSog));
+        return Ok((sog::read_streamed(document, files)?, Format::StreamedSog));
     }
-    if has("asset") {
-        return Ok((gltf::read_document(&document, None, folder)?, Format::Gltf));
+    if project::is(document) {
+        return Ok((project::read(document, files)?, Format::SuperSplat));
     }
-    let what = match has("layers") {
-        true => "it is a list of layers, which the program rara reads where its name ends in .json",
-        false => "it is JSON, but neither the meta.json of a SOG scene nor glTF",
-    };
-    let read = Format::readable();
-    Err(format!("this is no scene: {what}; {read} are read").into())
+    match unread::document(document) {
+        Some(what) => Err(what.into()),
+        None => Ok((
+            gltf::read_document(document, None, files, asked)?,
+            Format::Gltf,
+        )),
+    }
+}
+
+/// A list of an object; empty where there is none.
+fn list<'a>(object: &'a Value, key: &str) -> &'a [Value] {
+    let list = object.get(key).and_then(Value::as_array);
+    list.map(Vec::as_slice).unwrap_or_default()
+}
+
+/// The numbers of a list, or a single one; none where something else is among them.
+fn numbers(value: &Value) -> Option<Vec<f64>> {
+    match value {
+        Value::Array(all) => all.iter().map(Value::as_f64).collect(),
+        one => Some(vec![one.as_f64()?]),
+    }
+}
+
+/// The names of the members of an object that are not read, as messages have them.
+fn unread_members(object: &Value, is_read: impl Fn(&str) -> bool) -> Vec<String> {
+    let names = object.as_object().into_iter().flatten();
+    let unread = names.filter(|(name, _)| !is_read(name));
+    unread.map(|(name, _)| shortened(name)).collect()
 }
 
 /// Text without a byte-order mark.
@@ -263,26 +252,7 @@ fn bare(text: &[u8]) -> &[u8] {
 }
 
 /// A JSON document; its text is the limit of its memory, and its depth is bounded.
-fn json(bytes: &[u8]) -> std::result::Result<serde_json::Value, String> {
+fn json(bytes: &[u8]) -> std::result::Result<Value, String> {
     serde_json::from_slice(bare(bytes))
         .map_err(|error| format!("its JSON is damaged: {error}; export the scene again"))
-}
-
-/// A file beside the scene's, whose name stands in it: within its folder, and a name that cannot lead out.
-fn beside(name: &str, folder: Option<&Path>) -> std::result::Result<Vec<u8>, Failure> {
-    let quoted = rara_base::error::shortened(name);
-    let folder = folder.ok_or_else(|| {
-        format!("it needs the file \"{quoted}\" beside it; load it by its path, not from memory")
-    })?;
-    let mut parts = Path::new(name).components();
-    if name.is_empty()
-        || name.contains(['\\', ':'])
-        || !parts.all(|part| matches!(part, std::path::Component::Normal(_)))
-    {
-        return Err(Failure::Format(format!(
-            "it names \"{quoted}\", which is no name of a file in its own folder; export the scene again"
-        )));
-    }
-    let path = folder.join(name);
-    Ok(std::fs::read(&path).map_err(Error::io(&path))?)
 }

@@ -94,12 +94,11 @@ impl SpzHeader {
             signs: axes,
             is_z_up,
         } = axes;
-        let degree = self.degree.min(3);
-        let room = room(self.count, degree, ColumnForm::LogScales)?;
+        let room = room(self.count, self.degree, ColumnForm::LogScales)?;
         let [position, _, _, _, rotation, harmonics] = self.sizes().map(|size| size as usize);
         let unit = f64::from(1_u32 << self.fraction_bits).recip();
         let sh_signs = signs(axes);
-        let mut made = room.make(|index, row| {
+        let made = room.make(|index, row| {
             let centre = &runs[0][index * position..][..position];
             for axis in 0..3 {
                 let value = match self.version {
@@ -142,10 +141,6 @@ impl SpzHeader {
             }
             Ok(())
         })?;
-        if self.degree > 3 {
-            made.report
-                .note("left out the spherical harmonics of degree 4, which are not drawn".into());
-        }
         let mut made = FormatOutput::from(made);
         made.gaussians
             .set_antialiased(self.flags & ANTIALIASED != 0);

@@ -1,8 +1,10 @@
 //! A scene in a file that only compresses it: a gzip stream, or a zip archive that holds nothing else that could be meant.
 
+use std::path::Path;
+
+use super::files::{Archive, Files, own_name};
 use super::inflate::Gzip;
-use super::sog::Archive;
-use super::{Failure, Format};
+use super::{Failure, Format, project};
 use rara_base::counted::counted;
 
 /// A stream may become so many times as large: scenes are numbers without much order, of which gzip saves half.
@@ -10,27 +12,55 @@ const MOST: u64 = 64;
 /// A scene of a few Gaussians may have so many bytes more.
 const LEAST: u64 = 1 << 20;
 
-/// The scene that a file wraps, if it is one that wraps. A gzip stream may be a `.spz` too, and an archive a `.sog`.
-pub(super) fn scene(bytes: &[u8]) -> Result<Option<Vec<u8>>, Failure> {
-    match bytes {
-        [0x1f, 0x8b, ..] => gzip(bytes),
-        [b'P', b'K', 3 | 5, 4 | 6, ..] => archive(bytes),
-        _ => Ok(None),
+/// Returns the scene that a gzip stream holds; `None` for what is no such stream.
+pub(super) fn decompressed(bytes: &[u8]) -> Result<Option<Vec<u8>>, Failure> {
+    match is_gzip(bytes) {
+        true => once(gzip(bytes)?).map(Some),
+        false => Ok(None),
     }
 }
 
-fn gzip(bytes: &[u8]) -> Result<Option<Vec<u8>>, Failure> {
-    // What is damaged from the start is said by the reader of .spz.
-    match Gzip::new(bytes).next(4) {
-        Ok(start) if start != b"NGSP" => {}
-        _ => return Ok(None),
+/// Returns the one scene that an archive wraps, and where the files beside it are; `None` for an archive that wraps none, as
+/// one whose files are a scene together.
+pub(super) fn unpacked<'a>(
+    archive: &'a Archive<'_>,
+) -> Result<Option<(Vec<u8>, Files<'a>)>, Failure> {
+    let Some(path) = scene(archive)? else {
+        return Ok(None);
+    };
+    let scene = once(archive.get(path)?)?;
+    Ok(Some((scene, Files::beside(archive, path))))
+}
+
+/// Refuses a scene that is wrapped once more.
+fn once(scene: Vec<u8>) -> Result<Vec<u8>, Failure> {
+    if is_gzip(&scene) || is_archive(&scene) {
+        return Err(Failure::Format(
+            "it is compressed twice; decompress it once".into(),
+        ));
     }
+    Ok(scene)
+}
+
+/// True for a gzip stream that is no `.spz`. What is damaged from the start is said by the reader of `.spz`.
+fn is_gzip(bytes: &[u8]) -> bool {
+    let is_stream = bytes.starts_with(&[0x1f, 0x8b]);
+    is_stream && Gzip::new(bytes).next(4).is_ok_and(|start| start != b"NGSP")
+}
+
+fn is_archive(bytes: &[u8]) -> bool {
+    let archive = Archive::is(bytes)
+        .then(|| Archive::open(bytes).ok())
+        .flatten();
+    archive.is_some_and(|archive| !matches!(scene(&archive), Ok(None)))
+}
+
+fn gzip(bytes: &[u8]) -> Result<Vec<u8>, Failure> {
     let most = MOST * bytes.len() as u64 + LEAST;
     let mut stream = Gzip::new(bytes);
     let scene = stream.next(most)?;
-    let behind = stream.rest()?;
-    match behind {
-        0 => Ok(Some(scene)),
+    match stream.rest()? {
+        0 => Ok(scene),
         _ => Err(Failure::Format(format!(
             "its gzip stream has {} and more, which no scene compresses to that; decompress it, if it is one",
             counted(scene.len(), "byte")
@@ -38,13 +68,30 @@ fn gzip(bytes: &[u8]) -> Result<Option<Vec<u8>>, Failure> {
     }
 }
 
-fn archive(bytes: &[u8]) -> Result<Option<Vec<u8>>, Failure> {
-    let archive = Archive::open(bytes)?;
-    let is_scene = |name: &String| !name.starts_with('.') && Format::is_name(name);
-    let scenes: Vec<String> = archive.names().filter(is_scene).collect();
-    match scenes.as_slice() {
-        [] => Ok(None), // the reader of .sog says what it misses
-        [one] => archive.get(one).map(Some),
+/// The file that describes what the others of an archive are together, if there is one.
+pub(super) fn description(archive: &Archive<'_>) -> Option<&'static str> {
+    names_scenes(archive).or_else(|| archive.find("meta.json").and(Some("meta.json")))
+}
+
+/// The same of one that may name files that are scenes themselves.
+fn names_scenes(archive: &Archive<'_>) -> Option<&'static str> {
+    match archive.find("lod-meta.json") {
+        Some(_) => Some("lod-meta.json"),
+        None => project::document(archive).and(Some(project::DOCUMENT)),
+    }
+}
+
+/// The scene of an archive that holds nothing else that could be meant.
+fn scene<'a>(archive: &'a Archive<'_>) -> Result<Option<&'a Path>, Failure> {
+    if names_scenes(archive).is_some() {
+        return Ok(None);
+    }
+    let scenes = archive
+        .paths()
+        .filter(|path| Format::is_name(&own_name(path)));
+    match scenes.collect::<Vec<_>>().as_slice() {
+        [] => Ok(None),
+        [one] => Ok(Some(one)),
         several => Err(Failure::Format(format!(
             "the archive holds {}; unpack it, and give the one that is meant",
             counted(several.len(), "scene")
@@ -53,75 +100,4 @@ fn archive(bytes: &[u8]) -> Result<Option<Vec<u8>>, Failure> {
 }
 
 #[cfg(test)]
-mod tests {
-    use std::io::{Cursor, Write};
-    use std::path::Path;
-
-    use flate2::{Compression, write::GzEncoder};
-    use zip::write::SimpleFileOptions;
-
-    use crate::{Format, Gaussians, load_from, save_ply};
-
-    fn gzip(bytes: &[u8]) -> Vec<u8> {
-        let mut stream = GzEncoder::new(Vec::new(), Compression::fast());
-        stream.write_all(bytes).unwrap();
-        stream.finish().unwrap()
-    }
-
-    fn archive(files: &[(&str, &[u8])]) -> Vec<u8> {
-        let mut made = zip::ZipWriter::new(Cursor::new(Vec::new()));
-        for (name, bytes) in files {
-            made.start_file(*name, SimpleFileOptions::default())
-                .unwrap();
-            made.write_all(bytes).unwrap();
-        }
-        made.finish().unwrap().into_inner()
-    }
-
-    #[test]
-    fn one_scene_in_a_wrapper_is_read() {
-        let mut scene = Gaussians::default();
-        scene.push(
-            glam::Vec3::ONE,
-            glam::Vec3::ONE,
-            glam::Quat::IDENTITY,
-            0.5,
-            &[0.0; 3],
-        );
-        let path = std::env::temp_dir().join(format!("rara-wrapped-{}.ply", std::process::id()));
-        save_ply(&path, &scene).unwrap();
-        let ply = std::fs::read(&path).unwrap();
-        std::fs::remove_file(&path).unwrap();
-        let load = |bytes: Vec<u8>| load_from(Cursor::new(bytes), Path::new("a"), &mut |_, _| ());
-        let note: &[u8] = b"hello";
-        for whole in [
-            gzip(&ply),
-            archive(&[
-                ("scans/a.PLY", &ply),
-                ("readme.txt", note),
-                ("__MACOSX/._a.ply", note),
-            ]),
-            archive(&[("a.ply", &ply)]),
-        ] {
-            let loaded = load(whole).unwrap();
-            assert_eq!(
-                (loaded.format, loaded.gaussians),
-                (Format::Ply, scene.clone())
-            );
-        }
-        for (wrong, says) in [
-            (gzip(&gzip(&ply)), "compressed twice"),
-            (archive(&[("a.ply", &gzip(&ply))]), "compressed twice"),
-            (
-                archive(&[("a.ply", &ply), ("b.splat", note)]),
-                "holds 2 scenes",
-            ),
-            (archive(&[("readme.txt", note)]), "meta.json"),
-            (gzip(&vec![0; 8 << 20]), "which no scene compresses to"),
-            (gzip(note), "no scene of a format that is read"),
-        ] {
-            let error = load(wrong).unwrap_err().to_string();
-            assert!(error.contains(says), "{error}");
-        }
-    }
-}
+pub(super) mod tests;

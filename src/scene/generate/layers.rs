@@ -25,42 +25,27 @@ struct Layer {
 
 /// From the inside to the outside.
 const LAYERS: [Layer; 5] = [
-    Layer {
-        inner: 0.0,
-        outer: 0.2,
-        density: 4.0,
-        opacity: 0.75,
-        colour: marrow,
-    },
-    Layer {
-        inner: 0.2,
-        outer: 0.38,
-        density: 4.0,
-        opacity: 0.97,
-        colour: bone,
-    },
-    Layer {
-        inner: 0.38,
-        outer: 0.77,
-        density: 1.6,
-        opacity: 0.85,
-        colour: muscle,
-    },
-    Layer {
-        inner: 0.77,
-        outer: 0.93,
-        density: 1.0,
-        opacity: 0.6,
-        colour: fat,
-    },
-    Layer {
-        inner: 0.93,
-        outer: 1.0,
-        density: 3.0,
-        opacity: 0.9,
-        colour: skin,
-    },
+    layer([0.0, 0.2], 4.0, 0.75, marrow),
+    layer([0.2, 0.38], 4.0, 0.97, bone),
+    layer([0.38, 0.77], 1.6, 0.85, muscle),
+    layer([0.77, 0.93], 1.0, 0.6, fat),
+    layer([0.93, 1.0], 3.0, 0.9, skin),
 ];
+
+const fn layer(
+    [inner, outer]: [f64; 2],
+    density: f64,
+    opacity: f64,
+    colour: fn(DVec3, f64) -> DVec3,
+) -> Layer {
+    Layer {
+        inner,
+        outer,
+        density,
+        opacity,
+        colour,
+    }
+}
 
 pub(super) fn generate(count: usize, mut random: Random) -> Gaussians {
     let mut builder = Builder::new(count, 0);

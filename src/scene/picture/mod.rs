@@ -5,6 +5,9 @@ mod channels;
 mod cues;
 #[cfg(feature = "picture")]
 mod file;
+#[cfg(feature = "ink")]
+#[doc(hidden)]
+pub mod ink;
 mod light;
 #[cfg(feature = "picture")]
 mod npy;
@@ -14,6 +17,8 @@ pub use cues::{Cue, Cues};
 pub use file::PngCompression;
 #[doc(hidden)]
 pub use light::linear_light;
+
+use rara_base::named;
 
 /// RGBA pixels, 32-bit float, premultiplied, blended values as they are (no transfer function).
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -26,30 +31,39 @@ pub struct Picture {
     pub pixels: Vec<[f32; 4]>,
 }
 
-/// A quantity that a pixel can have beside its colour.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
-pub enum Aov {
-    /// Channel Z: the mean depth of what is left, along the view axis, world units; 0 where nothing is
-    Depth,
-    /// Channels N.X, N.Y, N.Z: the mean direction of the splats' thinnest axes, turned to the eye, in the world, of length one;
-    /// 0 where nothing is
-    Normal,
-    /// Channel layer: the number of the layer, from 0, whose splats add most to alpha; -1 where nothing is
-    Layer,
-    /// Channel weight: the mean share that the clip leaves of the splats, 1 where it cuts none; 0 where nothing is
-    Weight,
-    /// Channel count: how many splats make the pixel, until it is saturated
-    Count,
+named! {
+    /// A quantity that a pixel can have beside its colour.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub enum Aov {
+        /// Channel Z: the mean depth of what the clip leaves, along the view axis, in world units; 0 in an empty pixel
+        Depth = "depth",
+        /// Channels N.X, N.Y, N.Z: the mean of the splats' thinnest axes, turned towards the eye, as a unit vector in world
+        /// coordinates; 0 in an empty pixel
+        Normal = "normal",
+        /// Channel layer: the number, from 0, of the layer whose splats add most to alpha; -1 in an empty pixel
+        Layer = "layer",
+        /// Channel weight: the mean share that the clip leaves of the splats, 1 if it cuts none of them; 0 in an empty pixel
+        Weight = "weight",
+        /// Channel count: the number of splats in the pixel, until it is saturated
+        Count = "count",
+    }
 }
 
 /// A number for each pixel of a picture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Channel {
-    /// Its name in a file, not one of `R`, `G`, `B` and `A`.
+    /// The name of the channel in a file. It is not `R`, `G`, `B` or `A`.
     pub name: String,
     /// Row by row from the top left.
     pub values: Vec<f32>,
+}
+
+/// The size of a picture, `WxH`, which may be beyond what devices can draw.
+#[doc(hidden)]
+pub fn size(text: &str) -> Result<(u32, u32), String> {
+    let parts = text.split_once(['x', 'X']);
+    let sides = parts.and_then(|(w, h)| Some((w.trim().parse().ok()?, h.trim().parse().ok()?)));
+    sides.ok_or_else(|| "expected a width and a height like 1024x768".into())
 }
 
 impl Picture {
@@ -99,39 +113,4 @@ fn premultiplied([r, g, b, a]: [f32; 4]) -> [f32; 4] {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn bytes_are_unpremultiplied_rounded_and_clamped() {
-        assert_eq!(to_bytes([0.25, 0.0, 0.5, 0.5]), [128, 0, 255, 128]);
-        assert_eq!(to_bytes([0.9, -1.0, 0.5, 0.5]), [255, 0, 255, 128]);
-        assert_eq!(to_bytes([0.3, 0.3, 0.3, 0.0]), [0; 4]);
-        assert_eq!(to_bytes([f32::NAN, 1.0, 0.0, 1.0]), [0, 255, 0, 255]);
-        // Just below and just above the middle between two levels.
-        assert_eq!(
-            to_bytes([100.49 / 255.0, 100.51 / 255.0, 0.0, 1.0])[..2],
-            [100, 101]
-        );
-    }
-
-    #[test]
-    fn quantising_an_opaque_picture_moves_no_value_by_more_than_half_a_level_and_only_once() {
-        let values = (0..1000).map(|i| i as f32 / 999.0);
-        let picture = Picture {
-            width: 1000,
-            height: 1,
-            pixels: values.map(|v| [v, 1.0 - v, v * v, 1.0]).collect(),
-        };
-        let once = picture.quantised();
-        for (a, b) in picture
-            .pixels
-            .iter()
-            .flatten()
-            .zip(once.pixels.iter().flatten())
-        {
-            assert!((a - b).abs() <= 0.5 / 255.0 + 1e-6);
-        }
-        assert_eq!(once.quantised(), once);
-    }
-}
+mod tests;

@@ -3,11 +3,11 @@
 use std::io::{BufRead, BufReader, Read};
 use std::ops::Range;
 
-use super::Progress;
 use super::header::PlyHeader;
 use super::layout::{Field, Layout};
 use crate::assemble::{Assembler, GaussianRow, ROWS};
 use crate::failure::Failure;
+use crate::input::Progress;
 use rara_base::counted::counted;
 use rara_base::error::shortened;
 

@@ -5,12 +5,12 @@ use std::ops::Range;
 
 use ply_rs::ply::{ElementDef, Encoding};
 
-use super::Progress;
 use super::header::PlyHeader;
 use super::layout::{Field, Layout, fixed_size};
 use super::number::Number;
 use crate::assemble::{Assembler, ROWS};
 use crate::failure::Failure;
+use crate::input::Progress;
 
 /// Bytes read at once: few enough to stay in the processor's cache until they are parsed, and enough to make system calls
 /// cheap.

@@ -5,6 +5,7 @@
 
 use std::collections::HashSet;
 
+use glam::DVec3;
 use ply_rs::parser::{Parser, Reader};
 use ply_rs::ply::{DefaultElement, ElementDef, Encoding, PropertyType, ScalarType};
 
@@ -34,6 +35,8 @@ pub(super) struct PlyHeader {
     pub(super) line_end: u8,
     /// What the comments say of the Gaussians.
     pub(super) kind: Option<TrainerKind>,
+    /// The direction that is up, where a comment says it.
+    pub(super) up: Option<DVec3>,
     /// How they were trained by that and by who wrote the file, and what there is to say of it.
     pub(super) training: (Training, Vec<String>),
 }
@@ -72,6 +75,7 @@ impl PlyHeader {
             blank: all - lines.len(),
             line_end,
             kind: TrainerKind::from_comments(&lines),
+            up: trained::up(&lines),
             training: trained::training(&lines),
         })
     }

@@ -1,12 +1,13 @@
 //! From declared properties to slots: which value of a row is which attribute of a Gaussian.
 
-use ply_rs::ply::{ElementDef, Encoding, PropertyType};
+use ply_rs::ply::{ElementDef, Encoding, PropertyDef, PropertyType};
 
 use super::header::PlyHeader;
 use super::number::Number;
 use super::trained::{self, FILTER};
 use crate::Property;
 use crate::assemble::{FIXED, SCALES, SH, SLOTS, check_count, degree_of};
+use crate::input::ALL;
 use rara_base::counted::counted;
 use rara_base::error::shortened;
 
@@ -27,6 +28,9 @@ pub(super) struct Layout<'a> {
     /// Gaussians the header promises.
     pub(super) count: u64,
     pub(super) fields: Vec<Field>,
+    /// Of the spherical harmonics that the file has.
+    pub(super) stored_degree: u32,
+    /// Of those that are read.
     pub(super) sh_degree: u32,
     /// True for discs, which have no third scale.
     pub(super) is_flat: bool,
@@ -35,6 +39,8 @@ pub(super) struct Layout<'a> {
     /// The properties that were asked for and the Gaussians' filters, in the order of their slots from [`SLOTS`] on; without
     /// values.
     pub(super) properties: Vec<Property>,
+    /// The names of what the file has beside that.
+    pub(super) others: Vec<String>,
     /// Bytes of all elements after the Gaussians, if no list makes that unknowable.
     pub(super) after: Option<u64>,
 }
@@ -48,10 +54,10 @@ impl<'a> Layout<'a> {
         let vertex = &header.elements[at];
         check_count(vertex.count as u64)?;
         let rest = count_rest(vertex)?;
-        let sh_degree = degree_of(rest).ok_or_else(|| {
+        let stored_degree = degree_of(rest).ok_or_else(|| {
             format!(
-                "the file has {rest} f_rest properties; spherical harmonics of degree 0, 1, 2 or 3 have 0, 9, 24 or 45, \
-                 export the scene with one of these"
+                "the file has {rest} f_rest properties; spherical harmonics of degree 0, 1, 2, 3 or 4 have 0, 9, 24, 45 or \
+                 72, export the scene with one of these"
             )
         })?;
         let mut missing: Vec<_> = FIXED
@@ -82,9 +88,40 @@ impl<'a> Layout<'a> {
                 missing.join(", ")
             ));
         }
-        let mut asked = asked.to_vec();
+        let extra = |name: &str| {
+            let is_usual =
+                ["nx", "ny", "nz", FILTER].contains(&name) || name.starts_with("f_rest_");
+            !is_usual && slot_of(name).is_none()
+        };
+        let extra: Vec<_> = vertex
+            .properties
+            .values()
+            .filter(|one| extra(&one.name))
+            .collect();
+        let is_number = |one: &&&PropertyDef| matches!(one.data_type, PropertyType::Scalar(_));
+        let all = extra.iter().filter(is_number).map(|one| one.name.as_str());
+        let all = all.filter(|_| asked.contains(&ALL));
+        let mut asked: Vec<&str> = asked
+            .iter()
+            .copied()
+            .filter(|name| *name != ALL)
+            .chain(all)
+            .collect();
         asked.extend(trained::has_filter(vertex).then_some(FILTER));
         let properties = asked_properties(vertex, &asked, &slot_of)?;
+        let is_read = |name: &str| properties.iter().any(|asked| asked.name == name);
+        let left = extra
+            .into_iter()
+            .filter(|one| !is_read(&one.name))
+            .map(|one| &one.name);
+        let elements = header
+            .elements
+            .iter()
+            .filter(|one| one.name != "vertex" && one.count > 0);
+        let others = left
+            .chain(elements.map(|one| &one.name))
+            .map(|name| shortened(name));
+        let others = others.collect();
         let asked_slot = |name: &str| {
             let at = properties.iter().position(|asked| asked.name == name);
             at.map(|at| SLOTS + at)
@@ -111,10 +148,12 @@ impl<'a> Layout<'a> {
             before: &header.elements[..at],
             count: vertex.count as u64,
             fields,
-            sh_degree,
+            stored_degree,
+            sh_degree: stored_degree.min(3),
             is_flat,
             full_colour,
             properties,
+            others,
             after,
         })
     }
@@ -276,7 +315,8 @@ fn slot_of(name: &str, rest: usize) -> Option<usize> {
             return None; // a name that was asked for may be one of a higher degree than the file's
         }
         let a_channel = rest / 3;
-        return Some(SH + 3 + 3 * (number % a_channel) + number / a_channel);
+        let slot = SH + 3 + 3 * (number % a_channel) + number / a_channel;
+        return (slot < SLOTS).then_some(slot);
     }
     FIXED.iter().position(|&fixed| fixed == name)
 }

@@ -8,18 +8,22 @@ mod number;
 mod packed;
 mod trained;
 
-use std::io::{Read, SeekFrom};
+use std::fs::File;
+use std::io::{Cursor, Read, SeekFrom};
+use std::path::Path;
 
 use glam::DVec3;
 use ply_rs::ply::Encoding;
 
 use self::header::PlyHeader;
 use self::layout::Layout;
+pub(super) use self::number::Number;
 use self::trained::TrainerKind;
-use super::assemble::Assembler;
-use super::failure::Failure;
-use super::load::{Input, Progress, SceneFile};
+pub(super) use self::trained::up_comment;
+use super::assemble::{ColumnForm, DEGREE_4, room_with};
+use super::input::{ALL, Input, LoadOptions, Progress};
 use super::placed::far_origin;
+use super::scene_file::SceneFile;
 use super::{Format, LoadReport, Property};
 use crate::Training;
 use rara_base::counted::counted;
@@ -27,6 +31,34 @@ use rara_base::error::{Error, Result};
 
 /// Gaussians of which one says where a scene is.
 const FIRST: u64 = 64;
+
+/// The direction that is up in the scene of a file, where that is a `.ply` whose comment says it (`Vertical Axis: z`).
+pub fn stated_up(path: &Path) -> Option<DVec3> {
+    let is_file = path.is_file(); // opening a pipe would wait for its writer
+    let mut start = Vec::new();
+    let file = File::open(path).ok().filter(|_| is_file)?;
+    file.take(header::MAX_BYTES as u64)
+        .read_to_end(&mut start)
+        .ok()?;
+    PlyHeader::parse(&start).ok()?.up
+}
+
+/// Reads a file that is in memory, and tells nobody how far.
+pub(super) fn read_bytes(
+    bytes: &[u8],
+    name: &Path,
+    options: LoadOptions<'_>,
+) -> Result<(SceneFile, Vec<Property>)> {
+    let input = Input {
+        source: &mut Cursor::new(bytes),
+        name,
+        options,
+    };
+    read(
+        input,
+        &mut Progress::new(bytes.len() as u64, &mut |_, _| ()),
+    )
+}
 
 /// Reads 3DGS `.ply` files, compressed ones too.
 pub(super) fn read(
@@ -36,9 +68,13 @@ pub(super) fn read(
     let Input {
         source,
         name,
-        properties: asked,
-        ..
+        options,
     } = input;
+    let asked = options.properties;
+    let form = ColumnForm::plain(
+        options.scales_are_activated,
+        options.opacities_are_activated,
+    );
     let format = |message: String| Error::format(name, message);
     let mut start = Vec::new();
     let limit = header::MAX_BYTES as u64;
@@ -51,7 +87,7 @@ pub(super) fn read(
     let mut antialiased = header.kind.map(|kind| kind == TrainerKind::Antialiased);
     let left = progress.total().saturating_sub(header.size);
     if packed::is(&header) {
-        if let Some(property) = asked.first() {
+        if let Some(property) = asked.iter().find(|asked| **asked != ALL) {
             return Err(format(format!(
                 "a compressed PLY has no property `{}` beside what a Gaussian is made of; only plain 3DGS .ply files have \
                  such",
@@ -64,6 +100,8 @@ pub(super) fn read(
         let made = made.map_err(|failure| failure.error_in(name))?;
         let (mut loaded, properties) = made.finish();
         loaded.format = Format::CompressedPly;
+        loaded.others = packed::others(&header);
+        loaded.up = header.up;
         note(&mut loaded.report, &header, false);
         loaded.says(antialiased, training);
         return Ok((loaded, properties));
@@ -72,10 +110,9 @@ pub(super) fn read(
     layout.check_size(header.encoding, left).map_err(format)?;
     let mut rows = |layout: &Layout, origin: DVec3, progress: &mut Progress<'_>| {
         let properties = layout.properties.clone();
-        let assembler = Assembler::with_room(layout.count, layout.sh_degree, properties);
-        let mut assembler = assembler
-            .ok_or_else(|| Failure::Memory(counted(layout.count, "Gaussian")).error_in(name))?
-            .about(origin);
+        let room = room_with(layout.count, layout.sh_degree, form, properties);
+        let room = room.map_err(|failure| failure.error_in(name))?;
+        let mut assembler = room.about(origin);
         source
             .seek(SeekFrom::Start(header.size))
             .map_err(Error::io(name))?;
@@ -112,7 +149,15 @@ pub(super) fn read(
     };
     let assembler = rows(&layout, origin, progress)?;
     let (mut loaded, mut properties) = assembler.finish();
+    loaded.others = layout.others;
+    loaded.up = header.up;
     note(&mut loaded.report, &header, layout.is_flat);
+    if layout.stored_degree > layout.sh_degree {
+        loaded.report.note(DEGREE_4.into());
+    }
+    if form == ColumnForm::Logarithms {
+        note_activated(&mut loaded);
+    }
     if layout.is_flat {
         trained::flatten(&mut loaded.gaussians);
     }
@@ -146,6 +191,37 @@ pub(super) fn read(
     }
     loaded.says(antialiased, training);
     Ok((loaded, properties))
+}
+
+/// Says so where what was read as logits, or as logarithms, all lies within 0 to 1: then it may be opacities, or scales.
+fn note_activated(loaded: &mut SceneFile) {
+    let set = &loaded.gaussians;
+    let ends = |(least, most): (f32, f32), value: f32| (least.min(value), most.max(value));
+    let none = (f32::INFINITY, f32::NEG_INFINITY);
+    let opacities = set.opacities().iter().copied().fold(none, ends);
+    let scales = set.scales().iter().flat_map(|scale| scale.to_array());
+    let scales = scales.fold(none, ends);
+    // Of the logits 0 and 1, and of the logarithms.
+    const OPACITIES: (f32, f32) = (0.5, 0.731_058_6);
+    const SCALES: (f32, f32) = (1.0, std::f32::consts::E);
+    let within = |own: (f32, f32), (least, most): (f32, f32)| {
+        least <= own.0 && own.1 <= most && own.1 > least
+    };
+    for (is_so, what, stored) in [
+        (within(opacities, OPACITIES), "opacity", "logits"),
+        (
+            within(scales, SCALES) && scales.0 > 1.0,
+            "scale",
+            "logarithms",
+        ),
+    ] {
+        if is_so {
+            loaded.report.note(format!(
+                "all numbers of {what} lie within 0 to 1, and are taken for {stored}; where they are not, --activated {what} \
+                 reads them as they are"
+            ));
+        }
+    }
 }
 
 /// Says what of a header is drawn otherwise than it stands there.

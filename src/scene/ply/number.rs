@@ -1,10 +1,10 @@
-//! The number types of PLY, and how a binary payload stores them.
+//! The number types of PLY and glTF, and how bytes store them.
 
 use ply_rs::ply::ScalarType;
 
 /// The library's type of the same meaning, but `Copy`.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Number {
+pub(crate) enum Number {
     I8,
     U8,
     I16,
@@ -31,8 +31,8 @@ impl From<&ScalarType> for Number {
 }
 
 impl Number {
-    /// Bytes in a binary payload.
-    pub(super) fn size(self) -> usize {
+    /// Bytes of one.
+    pub(crate) fn size(self) -> usize {
         match self {
             Self::I8 | Self::U8 => 1,
             Self::I16 | Self::U16 => 2,
@@ -43,7 +43,7 @@ impl Number {
 
     /// The number at the start of `bytes`, which hold at least its size. Every type fits a double.
     #[inline]
-    pub(super) fn decode(self, bytes: &[u8], big_endian: bool) -> f64 {
+    pub(crate) fn decode(self, bytes: &[u8], big_endian: bool) -> f64 {
         match self {
             Self::I8 => f64::from(bytes[0] as i8),
             Self::U8 => f64::from(bytes[0]),

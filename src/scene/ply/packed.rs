@@ -11,8 +11,9 @@ use crate::assemble::{
     Assembler, ColumnForm, OPACITY, ROTATION, SCALES, SH, degree_of, room, unit_quaternion,
 };
 use crate::failure::Failure;
-use crate::load::{Progress, Source};
+use crate::input::{Progress, Source};
 use rara_base::counted::counted;
+use rara_base::error::shortened;
 
 /// Gaussians in a chunk.
 const CHUNK: usize = 256;
@@ -25,6 +26,30 @@ pub(super) fn is(header: &PlyHeader) -> bool {
         .find(|element| element.name == "vertex");
     vertex.is_some_and(|vertex| vertex.properties.contains_key("packed_position"))
 }
+
+/// The names of what a file of this format has beside its Gaussians.
+pub(super) fn others(header: &PlyHeader) -> Vec<String> {
+    let elements = header.elements.iter();
+    let names = elements.flat_map(|element| match element.name.as_str() {
+        "vertex" => {
+            let names = element.properties.keys();
+            let left = names.filter(|name| !PACKED.contains(&name.as_str()));
+            left.map(|name| shortened(name)).collect()
+        }
+        "chunk" | "sh" => Vec::new(),
+        _ if element.count == 0 => Vec::new(),
+        other => vec![shortened(other)],
+    });
+    names.collect()
+}
+
+/// The properties of a Gaussian.
+const PACKED: [&str; 4] = [
+    "packed_position",
+    "packed_rotation",
+    "packed_scale",
+    "packed_color",
+];
 
 /// An element's rows in memory.
 struct Table {
@@ -199,17 +224,11 @@ fn assemble(
         )?),
         None => None,
     };
-    let names = [
-        "packed_position",
-        "packed_rotation",
-        "packed_scale",
-        "packed_color",
-    ];
-    let packed = vertices.needed(names, "vertex")?;
+    let packed = vertices.needed(PACKED, "vertex")?;
     let rest = harmonics.map_or(0, |table| table.fields.len());
     let degree = degree_of(rest).ok_or_else(|| {
         format!(
-            "the `sh` element has {}; degree 1, 2 or 3 has 9, 24 or 45, export the scene again",
+            "the `sh` element has {}; degree 1, 2, 3 or 4 has 9, 24, 45 or 72, export the scene again",
             counted(rest, "property")
         )
     })?;
@@ -249,8 +268,9 @@ fn assemble(
         if let Some(table) = harmonics {
             for (number, &column) in columns.iter().enumerate() {
                 let (channel, coefficient) = (number / (rest / 3), number % (rest / 3));
-                row[SH + 3 + 3 * coefficient + channel] =
-                    coefficient_of(table.number(index, column));
+                if let Some(to) = row.get_mut(SH + 3 + 3 * coefficient + channel) {
+                    *to = coefficient_of(table.number(index, column));
+                }
             }
         }
         Ok(())

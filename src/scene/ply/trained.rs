@@ -1,9 +1,12 @@
 //! How the Gaussians of a PLY were trained, in so far as that changes how they are drawn: by its comments, and by properties
 //! that only some trainers write.
 
+use glam::DVec3;
 use ply_rs::ply::{ElementDef, PropertyType};
 
 use crate::{Gaussians, SH_0, Training};
+use rara_base::counted::counted;
+use rara_base::error::shortened;
 
 /// The property in which Mip-Splatting and its descendants leave a deviation that each Gaussian has in all directions beside
 /// its scales: the finest detail that the training pictures show of it.
@@ -69,6 +72,35 @@ fn comments(lines: &[String]) -> impl DoubleEndedIterator<Item = String> {
     })
 }
 
+/// The direction that is up by the last comment that says it, as nerfstudio writes it: `Vertical Axis: z`.
+pub(super) fn up(lines: &[String]) -> Option<DVec3> {
+    comments(lines).rev().find_map(|comment| {
+        let (name, axis) = comment.split_once(':')?;
+        let is_axis = |(_, known): &&(DVec3, &str)| *known == axis.trim();
+        let found = AXES
+            .iter()
+            .find(is_axis)
+            .filter(|_| name.trim() == "vertical axis");
+        found.map(|(up, _)| *up)
+    })
+}
+
+/// The comment that says which direction is up; none where it is no axis.
+pub(crate) fn up_comment(up: DVec3) -> Option<String> {
+    let axis = AXES.iter().find(|(axis, _)| axis.abs_diff_eq(up, 1e-6));
+    axis.map(|(_, name)| format!("comment Vertical Axis: {name}\n"))
+}
+
+/// The axes by their names.
+const AXES: [(DVec3, &str); 6] = [
+    (DVec3::X, "x"),
+    (DVec3::Y, "y"),
+    (DVec3::Z, "z"),
+    (DVec3::NEG_X, "-x"),
+    (DVec3::NEG_Y, "-y"),
+    (DVec3::NEG_Z, "-z"),
+];
+
 /// How Gaussians were trained by a header, and what is to say of it. Brush trains antialiased with the low-pass of Mip-Splatting,
 /// others with that of 3DGS; this project's own [marks](Training::marks) come before that.
 pub(super) fn training(lines: &[String]) -> (Training, Vec<String>) {
@@ -99,7 +131,35 @@ pub(super) fn check(vertex: &ElementDef) -> Result<(), String> {
                 .into(),
         );
     }
-    Ok(())
+    let names = vertex.properties.keys();
+    let of_time: Vec<_> = names.filter(|name| is_of_time(name)).collect();
+    match of_time.first() {
+        Some(first) => Err(format!(
+            "its Gaussians change with time ({} and {} like it), and would all be drawn at once, those of every moment; \
+             export a .ply for each moment, and give them as scene_{{}}.ply",
+            shortened(first),
+            counted(of_time.len() - 1, "property")
+        )),
+        None => Ok(()),
+    }
+}
+
+/// True for the properties by which Gaussians move, turn, appear and fade: those of Spacetime Gaussians (`trbf_*`, `motion_*`,
+/// `omega_*`), of 4D Gaussians (`t`, `scale_t`, `rot_r_*`), and of their kin.
+fn is_of_time(name: &str) -> bool {
+    const FAMILIES: [&str; 6] = [
+        "trbf_",
+        "motion_",
+        "omega_",
+        "rot_r_",
+        "velocity_",
+        "rot_l_",
+    ];
+    match name {
+        "t" | "scale_t" | "t_scale" | "scaling_t" | "t_center" | "time_scale" => true,
+        "vx" | "vy" | "vz" => true,
+        _ => FAMILIES.iter().any(|family| name.starts_with(family)),
+    }
 }
 
 /// True when the Gaussians have filters of their own.
@@ -121,11 +181,7 @@ pub(super) fn smooth(gaussians: &mut Gaussians, filters: &[f64]) -> u64 {
             continue;
         }
         // A scale of zero that stays zero has lost nothing.
-        let shares = glam::DVec3::select(
-            after.cmpgt(glam::DVec3::ZERO),
-            before / after,
-            glam::DVec3::ONE,
-        );
+        let shares = DVec3::select(after.cmpgt(DVec3::ZERO), before / after, DVec3::ONE);
         let opacity = f64::from(gaussians.opacities()[index]) * shares.element_product();
         gaussians.opacities_mut()[index] = opacity as f32;
         gaussians.scales_mut()[index] = after.as_vec3();
@@ -134,88 +190,4 @@ pub(super) fn smooth(gaussians: &mut Gaussians, filters: &[f64]) -> u64 {
 }
 
 #[cfg(test)]
-mod tests {
-    use glam::{Quat, Vec3};
-
-    use super::*;
-    use crate::SortBy;
-
-    #[test]
-    fn the_last_comment_that_says_a_kind_counts() {
-        let kind = |lines: &[&str]| {
-            TrainerKind::from_comments(&lines.iter().map(|l| l.to_string()).collect::<Vec<_>>())
-        };
-        for (lines, expected) in [
-            (
-                &["comment SplatRenderMode: mip"][..],
-                Some(TrainerKind::Antialiased),
-            ),
-            (
-                &["comment  splatrendermode:  MIP "],
-                Some(TrainerKind::Antialiased),
-            ),
-            (&["comment SplatRenderMode: 2dgs"], Some(TrainerKind::Discs)),
-            (&["comment SplatRenderMode: new"], None),
-            (&["comment antialiased 1"], Some(TrainerKind::Antialiased)),
-            (
-                &["comment antialiased 1", "comment SplatRenderMode: default"],
-                Some(TrainerKind::Plain),
-            ),
-            (
-                &["comment antialiased 0", "comment SplatRenderMode: mip"],
-                Some(TrainerKind::Antialiased),
-            ),
-            (
-                &["property float antialiased 1", "comment SH degree: 3"],
-                None,
-            ),
-            (&[], None),
-        ] {
-            assert_eq!(kind(lines), expected, "{lines:?}");
-        }
-    }
-
-    #[test]
-    fn the_low_pass_is_what_a_mark_says_or_that_of_who_wrote_the_file() {
-        let found =
-            |lines: &[&str]| training(&lines.iter().map(|l| l.to_string()).collect::<Vec<_>>());
-        let (brush, mip) = (
-            "comment Exported from Brush",
-            "comment SplatRenderMode: mip",
-        );
-        for (lines, expected) in [
-            (&[brush, mip][..], 0.1),
-            (&[mip, "obj_info made by brush-app 0.3"], 0.1),
-            (&[brush, "comment SplatRenderMode: default"], 0.3),
-            (&[brush], 0.3),
-            (&[mip], 0.3),
-            (&[mip, "comment a brushed scene"], 0.3),
-            (&[brush, mip, "comment lowPass: 0.25"], 0.25),
-            (&["comment LOWPASS : 0.2"], 0.2),
-        ] {
-            let (found, unusable) = found(lines);
-            assert_eq!((found.low_pass, unusable), (expected, vec![]), "{lines:?}");
-        }
-        let (kept, unusable) = found(&["comment lowPass: much", "comment sortBy: distance"]);
-        assert_eq!(kept, Training::default().sort_by(SortBy::Distance));
-        assert!(unusable[0].contains("much"), "{unusable:?}");
-    }
-
-    #[test]
-    fn smoothing_widens_and_keeps_the_mass() {
-        let mut set = Gaussians::default();
-        for scale in [Vec3::new(0.3, 0.4, 0.0), Vec3::ZERO, Vec3::ONE] {
-            set.push(Vec3::ZERO, scale, Quat::IDENTITY, 0.8, &[0.0; 3]);
-        }
-        let unusable = smooth(&mut set, &[0.4, 0.0, f64::NAN]);
-        assert_eq!(unusable, 1);
-        assert!((set.scales()[0] - Vec3::new(0.5, 0.4 * 2.0_f32.sqrt(), 0.4)).length() < 1e-6);
-        assert_eq!(set.opacities()[0], 0.0, "a disc has no mass");
-        assert_eq!((set.scales()[1], set.opacities()[1]), (Vec3::ZERO, 0.8));
-        assert_eq!((set.scales()[2], set.opacities()[2]), (Vec3::ONE, 0.8));
-        let mut round = Gaussians::default();
-        round.push(Vec3::ZERO, Vec3::splat(0.3), Quat::IDENTITY, 0.5, &[0.0; 3]);
-        smooth(&mut round, &[0.4]);
-        assert!((round.opacities()[0] - 0.5 * 0.6_f32.powi(3)).abs() < 1e-6);
-    }
-}
+mod tests;

@@ -4,9 +4,9 @@ use glam::Vec3;
 
 use super::Headless;
 use crate::passes::SplatColours;
+use crate::renderer::Kept;
 use rara_base::error::Result;
 use rara_scene::camera::Camera;
-use rara_scene::clip::Clip;
 use rara_scene::picture::{Aov, Channel, Picture};
 use rara_scene::precision::TargetFormat;
 use rara_scene::settings::{Settings, Show};
@@ -18,12 +18,13 @@ impl Headless {
     /// Each channel takes a frame of its own; that of layers one for every three of them.
     ///
     /// # Errors
-    /// As [`render`](Self::render).
-    pub fn channels(
+    /// The errors of [`render`](Self::render).
+    pub fn channels<'a>(
         &mut self,
         aovs: &[Aov],
-        (camera, clip, settings): (&Camera, &Clip, &Settings),
+        (camera, kept, settings): (&Camera, impl Into<Kept<'a>>, &Settings),
     ) -> Result<Vec<Channel>> {
+        let kept = kept.into();
         // A background would count as a splat, and what these frames show is counted and divided: a picture of few bits rounds
         // it, and holds no count above one.
         let precision = settings.precision.target(TargetFormat::Float);
@@ -33,10 +34,10 @@ impl Headless {
             if aovs[..number].contains(aov) {
                 continue;
             }
-            let frame = (camera, clip, &settings);
+            let frame = (camera, kept, &settings);
             match aov {
                 Aov::Depth => {
-                    channels.push(channel("Z", self.expected_depth(camera, clip, &settings)?));
+                    channels.push(channel("Z", self.expected_depth(camera, kept, &settings)?));
                 }
                 Aov::Weight => {
                     let picture = self.shown(Show::Weight, SplatColours::Scene, frame)?;
@@ -65,19 +66,19 @@ impl Headless {
         &mut self,
         show: Show,
         colours: SplatColours,
-        (camera, clip, settings): (&Camera, &Clip, &Settings),
+        (camera, kept, settings): (&Camera, Kept<'_>, &Settings),
     ) -> Result<Picture> {
         let settings = settings.show(show);
         let settings = match show.needs_tiles() {
             true => settings.raster(rara_scene::settings::Raster::Auto),
             false => settings,
         };
-        self.render_in(colours, camera, clip, &settings)?;
+        self.render_in(colours, camera, kept, &settings)?;
         self.picture()
     }
 
     /// For each pixel the layer that adds most to it. A frame tells three layers apart, by its three colours.
-    fn layer_numbers(&mut self, frame: (&Camera, &Clip, &Settings)) -> Result<Vec<f32>> {
+    fn layer_numbers(&mut self, frame: (&Camera, Kept<'_>, &Settings)) -> Result<Vec<f32>> {
         let (width, height) = (frame.0.width as usize, frame.0.height as usize);
         let mut most = vec![(0.0_f32, -1.0_f32); width * height];
         let layers = self.layers().len();

@@ -3,10 +3,10 @@
 use super::super::loaded;
 use super::super::target::{blendable_on, vulkan_format};
 use super::Headless;
+use crate::renderer::Kept;
 use rara_base::error::{Error, Result};
 use rara_gpu::{BufferDesc, Drawer, ImageDesc, Location};
 use rara_scene::camera::Camera;
-use rara_scene::clip::Clip;
 use rara_scene::precision::TargetFormat;
 use rara_scene::settings::{Raster, Settings, Show};
 
@@ -18,21 +18,21 @@ impl Headless {
     /// This is a frame of its own, whose memory is freed again; nothing of the picture changes.
     ///
     /// # Errors
-    /// As [`render`](Self::render).
-    pub fn expected_depth(
+    /// The errors of [`render`](Self::render).
+    pub fn expected_depth<'a>(
         &mut self,
         camera: &Camera,
-        clip: &Clip,
+        kept: impl Into<Kept<'a>>,
         settings: &Settings,
     ) -> Result<Vec<f32>> {
-        let drawn = self.draw_depth(camera, clip, settings);
+        let drawn = self.draw_depth(camera, kept.into(), settings);
         drawn.map_err(|error| self.session.explain(error))
     }
 
     fn draw_depth(
         &mut self,
         camera: &Camera,
-        clip: &Clip,
+        kept: Kept<'_>,
         settings: &Settings,
     ) -> Result<Vec<f32>> {
         let session = &self.session;
@@ -44,7 +44,7 @@ impl Headless {
         // Depths are drawn as quads in any case, and lists of tiles could lack room. They are the same whatever a picture
         // shows, of which some is made by tiles alone.
         let drawn = settings.raster(Raster::Quad).show(Show::Colour);
-        let frame = renderer.configure(scene, camera, clip, &drawn)?;
+        let frame = renderer.configure(scene, camera, kept, &drawn)?;
         let image = device.create_image(&ImageDesc {
             name: "expected depth",
             width: camera.width,

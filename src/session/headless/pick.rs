@@ -3,12 +3,10 @@
 use ash::vk;
 
 use super::super::loaded;
-use super::super::no_room;
 use super::Headless;
-use crate::renderer::{Picker, Picks};
+use crate::renderer::{Kept, Outcome, Picker, Picks};
 use rara_base::error::{Error, Result};
 use rara_scene::camera::Camera;
-use rara_scene::clip::Clip;
 use rara_scene::settings::{Settings, Show};
 
 /// Room for the tiles' lists is known to suffice, or not to be had, after so many requests.
@@ -20,21 +18,21 @@ impl Headless {
     ///
     /// # Errors
     /// As [`Picker::record`], [`Error::Memory`] without room for what the pixels show, and [`Error::Invalid`] without a scene.
-    pub fn pick(
+    pub fn pick<'a>(
         &mut self,
         camera: &Camera,
-        clip: &Clip,
+        kept: impl Into<Kept<'a>>,
         settings: &Settings,
         rect: vk::Rect2D,
     ) -> Result<Picks> {
-        let picked = self.picked(camera, clip, settings, rect);
+        let picked = self.picked(camera, kept.into(), settings, rect);
         picked.map_err(|error| self.session.explain(error))
     }
 
     fn picked(
         &mut self,
         camera: &Camera,
-        clip: &Clip,
+        kept: Kept<'_>,
         settings: &Settings,
         rect: vk::Rect2D,
     ) -> Result<Picks> {
@@ -46,7 +44,7 @@ impl Headless {
             device.submit_and_wait(|cmd| {
                 // SAFETY: `cmd` is recording outside a rendering scope, all earlier submissions were waited for, and scene
                 // and picker outlive the wait for this one.
-                let recorded = unsafe { picker.record(cmd, scene, camera, clip, settings, rect) };
+                let recorded = unsafe { picker.record(cmd, scene, camera, kept, settings, rect) };
                 ticket = Some(recorded?);
                 Ok(())
             })?;
@@ -57,6 +55,6 @@ impl Headless {
                 return Ok(picks);
             }
         }
-        Err(no_room(&settings.show(Show::Strongest)))
+        Err(Outcome::no_room(&settings.show(Show::Strongest)))
     }
 }

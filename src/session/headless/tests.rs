@@ -1,5 +1,8 @@
 //! Tests that look inside, through seams that only they have.
 
+mod failures;
+mod tile_pictures;
+
 use super::*;
 use ash::vk;
 use glam::{DVec3, Vec3};

@@ -8,9 +8,9 @@ mod lost;
 use std::ffi::{CStr, c_void};
 use std::ptr::{null, null_mut};
 
+use crate::canvas::host::Host;
 use crate::canvas::{ONE_PIXEL, open_host};
 use crate::clips::clip_of;
-use crate::host::Host;
 use crate::layer::one_layer;
 use crate::results::{assert_fails, assert_ok};
 use rara::ash::{Entry, vk};

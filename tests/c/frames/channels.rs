@@ -67,6 +67,20 @@ pub(super) fn with_renderer(device: *mut RaraDevice, test: impl FnOnce(*mut Rara
     }
 }
 
+/// These layers on a device.
+pub(super) fn uploaded(device: *mut RaraDevice, layers: &[RaraLayer]) -> *mut RaraSceneBuffers {
+    let mut scene = null_mut();
+    let (list, count) = (layers.as_ptr(), layers.len());
+    // SAFETY: the device is alive, and so is what the layers are made of.
+    unsafe {
+        let format = RARA_SH_FORMAT_FLOAT;
+        assert_ok(rara_scene_buffers_upload(
+            device, list, count, format, &mut scene,
+        ));
+    }
+    scene
+}
+
 pub(super) fn camera(scene: &Gaussians) -> Camera {
     Camera::frame(&Bounds::of(scene), DVec3::NEG_Y, 50.0, SIZE).expect("a view")
 }
@@ -100,9 +114,9 @@ fn channels_are_those_of_a_headless_renderer() {
                 let state = RaraLayerState::from(state);
                 (layers[1].state, layers[1].clip) = (&state, kept);
                 let camera = RaraCamera::from(camera);
+                let uploaded = uploaded(ours.device, &layers);
                 let draw = |room: &RaraChannels| {
-                    let list = layers.as_ptr();
-                    rara_renderer_channels(renderer, list, 2, &camera, cut, null(), room)
+                    rara_renderer_channels(renderer, uploaded, &camera, cut, null(), room)
                 };
                 let before = rara_device_bytes(ours.device);
                 let mut values = vec![-7.0; 7 * PIXELS];
@@ -123,6 +137,7 @@ fn channels_are_those_of_a_headless_renderer() {
                 assert_ok(draw(&room(RARA_AOV_COUNT | RARA_AOV_LAYER, &mut some)));
                 assert!(some[..PIXELS] == values[4 * PIXELS..5 * PIXELS]);
                 assert!(some[PIXELS..] == values[6 * PIXELS..]);
+                rara_scene_buffers_destroy(uploaded);
                 rara_clip_destroy(cut);
                 rara_clip_destroy(kept);
             }
@@ -146,17 +161,12 @@ fn channels_are_of_a_scene_where_the_renderer_places_it() {
             unsafe {
                 let placement = RaraPlacement::from(placed);
                 assert_ok(rara_renderer_set_placement(renderer, &placement));
-                let (layer, camera) = (one_layer(ours.gaussians), RaraCamera::from(camera));
+                let camera = RaraCamera::from(camera);
+                let scene = ours.uploaded();
                 let room = room(ALL, &mut values);
-                assert_ok(rara_renderer_channels(
-                    renderer,
-                    &layer,
-                    1,
-                    &camera,
-                    null(),
-                    null(),
-                    &room,
-                ));
+                let made = rara_renderer_channels(renderer, scene, &camera, null(), null(), &room);
+                assert_ok(made);
+                rara_scene_buffers_destroy(scene);
             }
             // Numbers are rounded in another space; a pixel at a splat's edge may have it or not.
             let differ =
@@ -179,11 +189,11 @@ fn what_is_wrong_with_channels_is_said() {
         with_renderer(ours.device, |renderer| {
             let mut values = vec![-7.0; PIXELS];
             let camera = RaraCamera::from(camera(scene));
-            let layer = one_layer(ours.gaussians);
+            let uploaded = ours.uploaded();
             let usual = room(RARA_AOV_DEPTH, &mut values);
             // SAFETY: the handles are alive, and the pointers are null, or point to what they say.
-            let draw = |count, camera: &RaraCamera, room: *const RaraChannels| unsafe {
-                rara_renderer_channels(renderer, &layer, count, camera, null(), null(), room)
+            let draw = |scene, camera: &RaraCamera, room: *const RaraChannels| unsafe {
+                rara_renderer_channels(renderer, scene, camera, null(), null(), room)
             };
             for (room, says) in [
                 (
@@ -225,28 +235,34 @@ fn what_is_wrong_with_channels_is_said() {
                     "channels->struct_size is 7",
                 ),
             ] {
-                assert_fails(draw(1, &camera, &room), RARA_ERROR_INVALID, says);
+                assert_fails(draw(uploaded, &camera, &room), RARA_ERROR_INVALID, says);
             }
             assert_fails(
-                draw(1, &camera, null()),
+                draw(uploaded, &camera, null()),
                 RARA_ERROR_INVALID,
                 "channels is null",
             );
             assert_fails(
-                draw(0, &camera, &usual),
+                draw(null_mut(), &camera, &usual),
                 RARA_ERROR_INVALID,
-                "layer_count is 0",
+                "scene is null",
             );
             let odd = RaraCamera {
                 projection: 2,
                 ..camera
             };
-            assert_fails(draw(1, &odd, &usual), RARA_ERROR_INVALID, "projection 2");
+            assert_fails(
+                draw(uploaded, &odd, &usual),
+                RARA_ERROR_INVALID,
+                "projection 2",
+            );
             let mut made = usual;
             // SAFETY: the struct has the room that the call is given.
             let failed = unsafe { rara_channels_default(&mut made, size_of_val(&usual), 0, 1, 1) };
             assert_fails(failed, RARA_ERROR_INVALID, "channels->aovs is 0x0");
             assert!(values.iter().all(|value| *value == -7.0), "left alone");
+            // SAFETY: nothing uses it any more.
+            unsafe { rara_scene_buffers_destroy(uploaded) };
         });
     });
 }

@@ -9,6 +9,7 @@ use rara::scene::Bounds;
 use rara::{Clip, Headless, Settings};
 use rara_c::boundary::*;
 use rara_c::camera::*;
+use rara_c::cut::*;
 use rara_c::picker::*;
 
 /// A rectangle of the picture: its left and upper edge, its width and height.
@@ -29,6 +30,22 @@ fn picks_are_those_of_a_headless_renderer() {
                 let mut picker = null_mut();
                 assert_ok(rara_picker_create(renderer, 1, &mut picker));
                 let seen = RaraCamera::from(camera);
+                let mut cut = null_mut();
+                assert_ok(rara_cut_create(renderer, &mut cut));
+                assert_ok(rara_cut_configure(cut, uploaded, null(), null()));
+                let ask_of_cut = |x: i32| {
+                    let mut ticket = RaraPickTicket::default();
+                    let submitted = device.submit_and_wait(|cmd| {
+                        assert_ok(rara_cut_prepare(cut, cmd));
+                        let (seen, none, to) = (&seen, null(), &mut ticket);
+                        assert_ok(rara_picker_record_cut(
+                            picker, cmd, uploaded, seen, cut, none, x, y, width, height, to,
+                        ));
+                        Ok(())
+                    });
+                    submitted.expect("submits");
+                    ticket
+                };
                 let ask = |x: i32| {
                     let mut ticket = RaraPickTicket::default();
                     let mut result = RARA_OK;
@@ -84,8 +101,19 @@ fn picks_are_those_of_a_headless_renderer() {
                 );
                 assert_ok(read(second, PIXELS));
                 assert_eq!(answered, vk::TRUE);
+                let of_clip = picks;
+                let third = ask_of_cut(x);
+                let to = picks.as_mut_ptr();
+                assert_ok(rara_picker_read(picker, third, to, PIXELS, &mut answered));
+                let all = |picks: [RaraPick; PIXELS]| picks.map(|p| (p.number, p.layer, p.alpha));
+                assert!(all(of_clip) == all(picks), "the cut keeps the same");
+                rara_cut_destroy(cut);
                 let outside = ask(SIZE.0 as i32 - 3).0;
-                assert_fails(outside, RARA_ERROR_INVALID, "no part of a picture of 61x43");
+                assert_fails(
+                    outside,
+                    RARA_ERROR_INVALID,
+                    "not inside the picture of 61x43 px",
+                );
                 rara_picker_destroy(picker);
 
                 let headless = Headless::new(&Default::default());

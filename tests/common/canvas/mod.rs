@@ -3,6 +3,8 @@
 #![allow(dead_code, unreachable_pub, reason = "each test binary uses a part")]
 
 mod frame;
+#[path = "../../../tools/examples/host.rs"]
+pub mod host;
 mod image;
 mod pixels;
 mod scope;
@@ -10,8 +12,8 @@ mod scope;
 use rara::ash::{self, vk};
 use rara::gpu::{AdoptDesc, DepthImage, Device};
 
-use crate::host::{Host, HostDesc};
 pub use frame::Frame;
+use host::{Host, HostDesc};
 use image::Image;
 use pixels::decoded;
 
@@ -195,35 +197,60 @@ impl Canvas {
 
     /// Draws several scopes, one after the other, in one command buffer.
     pub fn draw_scopes(&self, scopes: &mut [Scope<'_>]) -> [Vec<[f32; 4]>; 2] {
-        let pixels = u64::from(self.desc.extent.width) * u64::from(self.desc.extent.height);
-        let colors = [
-            self.resolved.as_ref().or(Some(&self.color)),
-            self.second.as_ref(),
-        ];
-        let buffer = |name| {
-            let location = rara::gpu::Location::Readback;
-            let desc = rara_gpu::BufferDesc {
-                name,
-                size: pixels * 16,
-                location,
-            };
-            self.device.create_buffer(&desc).expect("memory")
-        };
-        let readbacks = ["color_readback", "second_readback"].map(buffer);
-        let submitted = self.device.submit_and_wait(|cmd| {
-            // SAFETY: `cmd` is recording, and everything that it uses outlives the wait.
-            unsafe { self.record(cmd, scopes, &colors, &readbacks) };
+        let mut drawn = Self::draw_together(&mut [(self, scopes)]);
+        drawn.pop().expect("one canvas")
+    }
+
+    /// Draws scopes of several canvases of one device in one command buffer, canvas by canvas.
+    pub fn draw_together(canvases: &mut [(&Self, &mut [Scope<'_>])]) -> Vec<[Vec<[f32; 4]>; 2]> {
+        let device = canvases[0].0.device.clone();
+        let readbacks: Vec<_> = canvases
+            .iter()
+            .map(|(canvas, _)| canvas.readbacks())
+            .collect();
+        let submitted = device.submit_and_wait(|cmd| {
+            for ((canvas, scopes), readbacks) in canvases.iter_mut().zip(&readbacks) {
+                // SAFETY: `cmd` is recording, and everything that it uses outlives the wait.
+                unsafe { canvas.record(cmd, scopes, &canvas.colors(), readbacks) };
+            }
             Ok(())
         });
         submitted.expect("submits");
-        let read = |(image, buffer): (&Option<&Image>, &rara_gpu::Buffer)| {
-            let image = image.as_ref();
-            image.map_or(Vec::new(), |i| {
-                decoded(i.format, buffer.mapped(), pixels as usize)
-            })
-        };
-        let mut pictures = colors.iter().zip(&readbacks).map(read);
-        [0, 1].map(|_| pictures.next().expect("two"))
+        let pairs = canvases.iter().zip(&readbacks);
+        pairs
+            .map(|((canvas, _), buffers)| canvas.read(buffers))
+            .collect()
+    }
+
+    /// The images that a frame leaves, if there are such attachments.
+    fn colors(&self) -> [Option<&Image>; 2] {
+        let first = self.resolved.as_ref().or(Some(&self.color));
+        [first, self.second.as_ref()]
+    }
+
+    fn pixels(&self) -> usize {
+        (self.desc.extent.width * self.desc.extent.height) as usize
+    }
+
+    /// Room for what they hold.
+    fn readbacks(&self) -> [rara_gpu::Buffer; 2] {
+        ["color_readback", "second_readback"].map(|name| {
+            let desc = rara_gpu::BufferDesc {
+                name,
+                size: 16 * self.pixels() as u64,
+                location: rara::gpu::Location::Readback,
+            };
+            self.device.create_buffer(&desc).expect("memory")
+        })
+    }
+
+    fn read(&self, buffers: &[rara_gpu::Buffer; 2]) -> [Vec<[f32; 4]>; 2] {
+        let colors = self.colors();
+        [0, 1].map(|at| {
+            let format = colors[at].map(|image| image.format);
+            let bytes = buffers[at].mapped();
+            format.map_or(Vec::new(), |format| decoded(format, bytes, self.pixels()))
+        })
     }
 
     /// # Safety

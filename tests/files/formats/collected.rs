@@ -3,9 +3,9 @@
 use rara::scene::{Format, load};
 
 use super::distance::Distance;
-use crate::shared::{files, shared};
+use crate::files::shared::{files, shared};
 
-use crate::ply::made::assert_sound;
+use crate::files::ply::made::assert_sound;
 
 #[test]
 fn other_projects_files_read() {
@@ -155,7 +155,7 @@ fn the_finest_level_of_a_streamed_scene_is_read() {
     let Some(sog) = shared("formats/leica_8192/sog_unbundled") else {
         return;
     };
-    let folder = crate::folder::Folder::new("formats-streamed");
+    let folder = crate::common::folder::Folder::new("formats-streamed");
     for level in ["0_0", "1_0"] {
         std::fs::create_dir(folder.join(level)).unwrap();
         for path in files(&sog) {

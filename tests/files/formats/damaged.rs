@@ -6,8 +6,8 @@ use proptest::prelude::*;
 use rara::scene::{Kind, generate, save};
 
 use super::load_bytes;
-use crate::folder::Folder;
-use crate::ply::made::assert_sound;
+use crate::common::folder::Folder;
+use crate::files::ply::made::assert_sound;
 
 /// A whole file of every format that is written, and some that are put together here.
 fn whole() -> &'static Vec<Vec<u8>> {

@@ -3,7 +3,7 @@
 use rara::scene::{Format, Kind, generate, load, save};
 
 use super::load_bytes;
-use crate::folder::Folder;
+use crate::common::folder::Folder;
 
 #[test]
 fn names_mean_nothing() {
@@ -36,6 +36,24 @@ fn what_is_not_read_is_named_with_the_remedy() {
         (b"[{}]", "cameras"),
         (b"{\"layers\": []}", "list of layers"),
         (b"{\"version\": 2}", "neither"),
+        (
+            br#"{"asset": {"version": "1.1"}, "geometricError": 500, "root": {"content": {"uri": "0.glb"}}}"#,
+            "3D Tiles: give the files that it names, such as 0.glb",
+        ),
+        (b"{\"totalSplats\": 3}", "LCC"),
+        (b"{\"frames\": []}", "cameras"),
+        (b"\x80\x04\x95pickle", "let the trainer export a .ply"),
+        (b"\x93NUMPY", "NumPy"),
+        (b"ASTM-E57", "E57"),
+        (b"Kaydara FBX Binary", "FBX"),
+        (b"7z\xbc\xaf\x27\x1c", "unpack it"),
+        (b"Rar!", "unpack it"),
+        (b"<!DOCTYPE html>", "web page"),
+        (b"version https://git-lfs.github.com/spec/v1", "git lfs pull"),
+        (b"\x89PNG", "picture"),
+        (b"v 0 0 0\n", "mesh"),
+        (b"# any program\no a\nv 0 0 0\n", "mesh"),
+        (b"\n <!doctype html>", "web page"),
         (b"hello, world", "convert it"),
         (b"PK\x03\x04 no archive at all, though", "cut off"),
         (b"\x1f\x8b no gzip at all, though", "damaged"),

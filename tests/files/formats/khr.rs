@@ -5,12 +5,14 @@ use meshoptimizer_rs::codec::{
     ExpMode, VertexEncoding, encode_filter_exp, encode_filter_quat, encode_vertex_buffer,
 };
 use rara::glam::{DAffine3, DMat3, DQuat, DVec3, Quat, Vec3};
-use rara::scene::{Annotations, LoadReport, SaveOptions, SceneFile, load, load_from, save_with};
+use rara::scene::{
+    Annotations, LoadReport, Property, SaveOptions, SceneFile, load, load_from_with, save_with,
+};
 use rara::{Gaussians, SortBy, Training};
 use serde_json::{Value, json};
 
 use super::variants::base64;
-use crate::folder::Folder;
+use crate::common::folder::Folder;
 use std::io::Cursor;
 use std::path::Path;
 
@@ -134,13 +136,23 @@ impl Asset {
     }
 
     fn file(&self) -> rara::Result<SceneFile> {
+        self.asked(&[]).map(|(file, _)| file)
+    }
+
+    /// With the properties of these names.
+    fn asked(&self, names: &[&str]) -> rara::Result<(SceneFile, Vec<Property>)> {
         let mut document = self.document.clone();
         document["buffers"] = json!([{
             "byteLength": self.bytes.len(),
             "uri": format!("data:application/octet-stream;base64,{}", base64(&self.bytes)),
         }]);
         let text = document.to_string();
-        load_from(Cursor::new(text), Path::new("a.gltf"), &mut |_, _| ())
+        load_from_with(
+            Cursor::new(text),
+            Path::new("a.gltf"),
+            names,
+            &mut |_, _| (),
+        )
     }
 }
 
@@ -198,7 +210,7 @@ fn assert_transformed(found: &Gaussians, first: usize, by: DAffine3, turn: DMat3
 }
 
 #[test]
-fn nodes_scale_unlike_in_different_directions() {
+fn nodes_scale_non_uniformly() {
     let mut asset = Asset::new();
     let turn = DQuat::from_xyzw(0.5, -0.5, 0.5, 0.5);
     asset.document["nodes"] = json!([{
@@ -243,7 +255,7 @@ fn nodes_mirror_what_they_have() {
     assert_transformed(&found, 0, DAffine3::from_mat3(turn), turn);
 }
 
-/// A turn below unlike scales is a shear. The harmonics follow the rotation that is nearest to it.
+/// A rotation below a non-uniform scale is a shear. The harmonics follow the rotation that is nearest to it.
 #[test]
 fn nodes_within_each_other_shear() {
     let mut asset = Asset::new();
@@ -315,6 +327,56 @@ fn nodes_flatten_and_hide() {
             .iter()
             .all(|scale| scale.min_element() < 1e-7)
     );
+}
+
+/// A node is hidden where one above it is.
+#[test]
+fn nodes_hide_what_is_below_them() {
+    let mut asset = Asset::new();
+    let hidden = json!({"KHR_node_visibility": {"visible": false}});
+    let shown = json!({"KHR_node_visibility": {"visible": true}});
+    asset.document["extensionsRequired"] = json!(["KHR_node_visibility"]);
+    asset.document["scenes"] = json!([{"nodes": [0, 1]}]);
+    asset.document["nodes"] = json!([
+        {"children": [2], "extensions": hidden},
+        {"mesh": 0, "extensions": shown},
+        {"mesh": 0, "extensions": shown},
+    ]);
+    let (found, report) = asset.load().unwrap();
+    assert_eq!(found.len(), stored().len(), "of one node");
+    let says = "left out 1 primitive of the glTF that nodes hide";
+    assert_eq!(report.lines(), [says]);
+    asset.document["scenes"] = json!([{"nodes": [0]}]);
+    assert!(asset.load().unwrap().0.is_empty());
+}
+
+#[test]
+fn attributes_are_properties_that_can_be_asked_for() {
+    let mut asset = Asset::new();
+    let view = asset.view(&[6, 0, 0, 0, 2, 0, 0, 0]);
+    let accessor = asset
+        .accessor(json!({"bufferView": view, "componentType": 5125, "count": 2, "type": "SCALAR"}));
+    asset.document["meshes"][0]["primitives"][0]["attributes"]["_CLASSIFICATION"] = json!(accessor);
+    for asked in ["_CLASSIFICATION", "*"] {
+        let (loaded, properties) = asset.asked(&[asked]).unwrap();
+        let [property] = &properties[..] else {
+            panic!("{properties:?}")
+        };
+        assert_eq!(
+            (&property.name[..], &property.values[..]),
+            ("_CLASSIFICATION", &[6.0, 2.0][..])
+        );
+        assert!(loaded.report.is_clean(), "{}", loaded.report);
+    }
+    let (loaded, _) = asset.asked(&[]).unwrap();
+    assert!(
+        loaded
+            .report
+            .to_string()
+            .contains("beside what is drawn: _CLASSIFICATION")
+    );
+    let error = asset.asked(&["label"]).unwrap_err().to_string();
+    assert!(error.contains("no property `label`"), "{error}");
 }
 
 /// Changes of elements, and elements of nothing else, which are zero.

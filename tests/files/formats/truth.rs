@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use rara::scene::{Format, load};
 
 use super::distance::Distance;
-use crate::shared::shared;
+use crate::files::shared::shared;
 
 /// Scales below this are as good as zero: `.spz` holds none below e^-10.
 const LEAST: f32 = 4.54e-5;

@@ -8,7 +8,7 @@ use rara::glam::{Mat3, Quat, Vec3};
 use rara::scene::load;
 
 use super::load_bytes;
-use crate::folder::Folder;
+use crate::common::folder::Folder;
 
 /// The spherical harmonic of degree 0.
 const SH_0: f32 = 0.282_094_8;

@@ -5,7 +5,7 @@ use rara::scene::{Kind, SaveOptions, generate, load, save, save_ply, save_with};
 use rara::{Gaussians, Placement};
 
 use super::distance::Distance;
-use crate::folder::Folder;
+use crate::common::folder::Folder;
 
 /// A scene whose harmonics are not zero.
 fn scene(count: usize) -> Gaussians {

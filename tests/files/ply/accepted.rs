@@ -1,7 +1,10 @@
 //! Files that must load, and the Gaussians that they must give.
 
-use glam::{Quat, Vec3};
-use rara::scene::{Gaussians, load, save_ply, sh_coefficients};
+use std::io::Cursor;
+use std::path::Path;
+
+use glam::{DVec3, Quat, Vec3};
+use rara::scene::{Gaussians, LoadOptions, load, load_from_with, save_ply, sh_coefficients};
 
 use super::made::{FIXED, FORMATS, File, Format, floats, load_bytes, scene_file, value};
 
@@ -56,6 +59,97 @@ fn every_degree_order_and_encoding() {
                 check_scene(&loaded.gaussians, 7);
             }
         }
+    }
+}
+
+/// Channel by channel, so that what is left out lies between what is read.
+#[test]
+fn the_harmonics_of_degree_4_are_left_out_and_said() {
+    let rest: Vec<String> = (0..72).map(|i| format!("f_rest_{i}")).collect();
+    let mut names = FIXED.to_vec();
+    names.extend(rest.iter().map(String::as_str));
+    for format in FORMATS {
+        let loaded = load_bytes(&scene_file(format, 5, &floats(&names)).bytes()).unwrap();
+        assert_eq!(
+            loaded.report.lines(),
+            ["left out the spherical harmonics of degree 4, which are not drawn"]
+        );
+        assert_eq!(loaded.gaussians.sh_degree(), 3);
+        for i in 0..5 {
+            for (at, own) in loaded.gaussians.sh_of(i)[3..].iter().enumerate() {
+                let name = &rest[at % 3 * 24 + at / 3];
+                assert_eq!(f64::from(*own), value(name, i, false), "{name}");
+            }
+        }
+    }
+}
+
+/// What activated columns are cannot be known; where all lie within 0 to 1 a note says what to do.
+#[test]
+fn activated_columns_are_read_as_they_are_where_that_is_asked_for() {
+    let activated = |number: f64, name: &str| match name {
+        "opacity" => 0.125 * number,
+        name if name.starts_with("scale_") => 0.25 * number,
+        _ => 1.0,
+    };
+    for (most, notes) in [(4, 2), (9, 0)] {
+        let mut file = File::new(Format::Little);
+        file.element("vertex", most, &floats(FIXED));
+        for number in 1..=most {
+            FIXED
+                .iter()
+                .for_each(|name| file.number("float", activated(number as f64, name)));
+        }
+        let bytes = file.bytes();
+        let usual = load_bytes(&bytes).unwrap();
+        let text = usual.report.lines().join("; ");
+        assert_eq!(usual.report.notes.len(), notes, "{text}");
+        let flags = ["--activated opacity", "--activated scale"];
+        assert!(
+            flags.iter().all(|flag| notes == 0 || text.contains(flag)),
+            "{text}"
+        );
+        for (opacity, scale) in [(true, false), (false, true), (true, true)] {
+            let options = LoadOptions::default().activated(opacity, scale);
+            let (read, _) =
+                load_from_with(Cursor::new(&bytes), Path::new("a"), options, &mut |_, _| ())
+                    .unwrap();
+            for number in 1..=most.min(4) {
+                let [o, s] = [0.125, 0.25].map(|unit| (unit * number as f64) as f32);
+                let own = (
+                    read.gaussians.opacities()[number - 1],
+                    read.gaussians.scales()[number - 1].x,
+                );
+                let plain = (1.0 / (1.0 + (-f64::from(o)).exp())) as f32;
+                let expected = (
+                    if opacity { o } else { plain },
+                    if scale { s } else { f64::from(s).exp() as f32 },
+                );
+                assert_eq!(own, expected);
+            }
+            assert_eq!(
+                read.report.repaired,
+                if most > 8 && opacity { 1 } else { 0 }
+            );
+        }
+    }
+}
+
+#[test]
+fn a_comment_says_what_is_up() {
+    let mut file = scene_file(Format::Ascii, 3, &floats(FIXED));
+    let header = file.header.clone();
+    for (axis, up) in [
+        ("z", Some(DVec3::Z)),
+        ("-Y", Some(DVec3::NEG_Y)),
+        ("w", None),
+    ] {
+        file.header = header.replacen(
+            "element",
+            &format!("comment Vertical Axis: {axis}\nelement"),
+            1,
+        );
+        assert_eq!(load_bytes(&file.bytes()).unwrap().up, up, "{axis}");
     }
 }
 

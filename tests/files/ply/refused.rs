@@ -79,6 +79,22 @@ fn headers_that_are_refused() {
             "{message:?}"
         );
     }
+    for name in [
+        "trbf_center",
+        "motion_0",
+        "omega_3",
+        "t",
+        "scale_t",
+        "rot_r_0",
+        "velocity_x",
+    ] {
+        let message = refusal(&with(&format!("property float {name}\n")));
+        let says = format!("change with time ({name} and 0 properties like it)");
+        assert!(
+            message.contains(&says) && message.contains("for each moment"),
+            "{message}"
+        );
+    }
     let mut file = File::new(Format::Ascii);
     let properties: Vec<_> = FIXED
         .iter()

@@ -5,8 +5,8 @@ use std::sync::{Arc, Mutex};
 
 use super::EXTENT;
 use super::target::{image, readback, readback_size, render_pass};
-use crate::host;
-use crate::host::validation::{self, Messages, Messenger};
+use crate::canvas::host;
+use crate::canvas::host::validation::{self, Messages, Messenger};
 use rara::Picture;
 use rara::ash::{Device, Entry, Instance, vk};
 use rara::gpu::{AdoptDesc, Support};

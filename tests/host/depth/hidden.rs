@@ -1,52 +1,58 @@
 //! Splats behind an opaque mesh are hidden, on ordinary and reversed depth, in few bits and many, in every way of drawing.
 
 use super::*;
+use crate::canvas::host::Host;
 use crate::canvas::with_host;
 use rara::gpu::Bindings;
 
+/// Whatever the depth buffer's numbers mean, from a perspective and an orthographic camera, and in either order.
 #[test]
 fn meshes_hide_the_splats_behind_them_on_ordinary_and_reversed_depth() {
-    hides(&World::new(), maps());
-}
-
-#[test]
-fn meshes_hide_the_splats_behind_them_from_an_orthographic_camera() {
     let linear = |zero, one| DepthMap::orthographic(zero, one).expect("two depths");
-    hides(&World::flat(), [linear(-1.0, 30.0), linear(30.0, 0.0)]);
-}
-
-/// Checks that every way of drawing leaves out what is behind the meshes.
-fn hides(world: &World, maps: impl IntoIterator<Item = DepthMap>) {
-    let truth = world.truth();
+    let worlds = [
+        (World::new(), maps().to_vec()),
+        (World::flat(), vec![linear(-1.0, 30.0), linear(30.0, 0.0)]),
+        (World::by_distance(), vec![maps()[1]]),
+    ];
+    let mut headless = common::headless();
     with_host(true, |host, device| {
         let first = first(device);
         let on = (device, &first);
-        for map in maps {
-            let desc = canvas(world, map, vk::Format::D32_SFLOAT);
-            let depth = depth_desc(&desc, map, true);
-            let canvas = Canvas::new(&host.lend(), device, desc);
-            for (raster, bindings) in common::rasters(device)
-                .into_iter()
-                .flat_map(|raster| [(raster, Bindings::Bound), (raster, Bindings::Address)])
-            {
-                let desc = RendererDesc::new(FLOATS)
-                    .depth(Some(depth))
-                    .bindings(bindings);
-                let (picture, path) = draw(on, &canvas, world, desc, raster);
-                let asked = match raster {
-                    Raster::Tiles => "tiles",
-                    Raster::Mesh => "mesh",
-                    _ => "quad",
-                };
-                assert_eq!(path, asked);
-                let worst = apart(&picture, &truth, 0.0);
-                assert!(
-                    worst < 1.0,
-                    "{map:?}, {raster:?}, {bindings:?}: {worst}/255"
-                );
+        for (world, maps) in &worlds {
+            let truth = world.truth(&mut headless);
+            for map in maps {
+                hides(on, host, (world, &truth), *map);
             }
         }
     });
+}
+
+/// Checks that every way of drawing leaves out what is behind the meshes.
+fn hides(on: On<'_>, host: &Host, (world, truth): (&World, &Picture), map: DepthMap) {
+    let (device, _) = on;
+    let desc = canvas(world, map, vk::Format::D32_SFLOAT);
+    let depth = depth_desc(&desc, map, true);
+    let canvas = Canvas::new(&host.lend(), device, desc);
+    for (raster, bindings) in common::rasters(device)
+        .into_iter()
+        .flat_map(|raster| [(raster, Bindings::Bound), (raster, Bindings::Address)])
+    {
+        let desc = RendererDesc::new(FLOATS)
+            .depth(Some(depth))
+            .bindings(bindings);
+        let (picture, path) = draw(on, &canvas, world, desc, raster);
+        let asked = match raster {
+            Raster::Tiles => "tiles",
+            Raster::Mesh => "mesh",
+            _ => "quad",
+        };
+        assert_eq!(path, asked);
+        let worst = apart(&picture, truth, 0.0);
+        assert!(
+            worst < 1.0,
+            "{map:?}, {raster:?}, {bindings:?}: {worst}/255"
+        );
+    }
 }
 
 /// Depths that a buffer rounds: a splat may lie on a mesh's own step, and then counts as before it in every way of
@@ -119,7 +125,7 @@ fn a_depth_image_beside_the_picture_hides_nothing() {
 #[test]
 fn tiles_that_cannot_see_the_hosts_depth_are_quads() {
     let world = World::new();
-    let truth = world.truth();
+    let truth = world.truth(&mut common::headless());
     let map = maps()[1];
     with_host(false, |host, device| {
         let first = first(device);

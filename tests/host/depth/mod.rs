@@ -11,8 +11,8 @@ use rara::ash::vk;
 use rara::gpu::{DepthImage, Device};
 use rara::scene::{Kind, generate};
 use rara::{
-    Camera, Clip, ClipOp, DepthDesc, DepthMap, Gaussians, Picture, Raster, Renderer, RendererDesc,
-    SceneBuffers, Settings,
+    Camera, Clip, ClipOp, DepthDesc, DepthMap, Gaussians, Headless, Picture, Raster, Renderer,
+    RendererDesc, SceneBuffers, Settings, SortBy,
 };
 
 const FLOATS: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
@@ -26,6 +26,7 @@ struct World {
     scene: Gaussians,
     camera: Camera,
     clip: Clip,
+    settings: Settings,
     /// Their places in pixels of the picture, and their depths.
     meshes: [(vk::Rect2D, f64); 2],
 }
@@ -42,6 +43,15 @@ impl World {
         let Self { scene, camera, .. } = Self::new();
         let camera = common::flattened(&camera, &scene);
         Self::of(scene, camera)
+    }
+
+    /// The same world from nearby, in the order of distance, which at the picture's edges is not that of depth.
+    fn by_distance() -> Self {
+        let Self { scene, camera, .. } = Self::new();
+        let (eye, focal) = (0.55 * camera.eye, 0.7 * camera.fx);
+        let mut world = Self::of(scene, camera.eye(eye).fx(focal).fy(focal));
+        world.settings = world.settings.sort_by(Some(SortBy::Distance));
+        world
     }
 
     fn of(scene: Gaussians, camera: Camera) -> Self {
@@ -63,18 +73,17 @@ impl World {
             scene,
             camera,
             clip,
+            settings: Settings::default(),
             meshes,
         }
     }
 
     /// The picture as a headless renderer draws it: where there is a mesh, of the Gaussians before it alone.
-    fn truth(&self) -> Picture {
-        let mut headless = common::headless();
+    fn truth(&self, headless: &mut Headless) -> Picture {
         let mut draw = |scene: &Gaussians| {
             headless.load(scene).expect("uploads");
-            let settings = Settings::default();
             headless
-                .render(&self.camera, &self.clip, &settings)
+                .render(&self.camera, &self.clip, &self.settings)
                 .expect("renders");
             headless.picture().expect("reads back")
         };
@@ -171,7 +180,7 @@ fn draw_behind(
     let format = rara::ShFormat::Float;
     let scene = SceneBuffers::upload(device, &world.scene, format).expect("uploads");
     let mut renderer = first.sharing(desc).expect("a renderer");
-    let settings = Settings::default().raster(raster);
+    let settings = world.settings.raster(raster);
     let configured = renderer.configure(&scene, &world.camera, &world.clip, &settings);
     let pixels = canvas.draw_frame(&mut renderer, &scene, configured, &frame(behind));
     let path = renderer.raster().path;

@@ -44,7 +44,7 @@ fn a_classic_render_pass_shows_the_same_picture() {
 #[test]
 fn targets_of_several_samples_resolve_to_the_same_picture() {
     let world = World::new();
-    let truth = world.truth();
+    let truth = world.truth(&mut common::headless());
     let map = maps()[1];
     let samples = vk::SampleCountFlags::TYPE_4;
     with_host(true, |host, device| {

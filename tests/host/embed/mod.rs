@@ -9,9 +9,9 @@ mod refused;
 mod reserve;
 mod viewport;
 
+use crate::canvas::host::{FRAMES, Host};
 use crate::canvas::{adopt, open_host};
 use crate::common;
-use crate::host::{FRAMES, Host};
 use rara::ash::vk;
 use rara::gpu::{Bindings, Device};
 use rara::scene::{Kind, generate};

@@ -163,3 +163,165 @@ fn one_renderer_draws_views_one_after_the_other_in_one_command_buffer() {
         }
     });
 }
+
+/// An eye of a cut: what it draws with, into which target, and what it sees.
+struct OfCut {
+    desc: RendererDesc,
+    canvas: Canvas,
+    eye: RefCell<(Renderer, Option<PreparedFrame>)>,
+    camera: Camera,
+    settings: Settings,
+}
+
+#[test]
+fn eyes_of_one_cut_have_sizes_targets_and_formats_of_their_own() {
+    let gaussians = generate(Kind::General, 3_000, 5);
+    let [left, right] = eyes(&gaussians);
+    let right = right.width(64).height(81).cx(32.0).cy(40.5);
+    let unorm = vk::Format::R8G8B8A8_UNORM;
+    with_host(true, |host, device| {
+        let mut scene = SceneBuffers::upload(device, &gaussians, ShFormat::Float).expect("uploads");
+        let descs = [desc(), RendererDesc::new(unorm).bindings(Bindings::Address)];
+        let first = Renderer::new(device, descs[0]).expect("a renderer");
+        let second = first.sharing(descs[1]).expect("another");
+        let mut cut = Cut::new(&first);
+        let of_cut = |renderer, desc, camera: Camera, format, way| OfCut {
+            desc,
+            canvas: Canvas::new(
+                &host.lend(),
+                device,
+                CanvasDesc::new((camera.width, camera.height), format),
+            ),
+            eye: RefCell::new((renderer, None)),
+            camera,
+            settings: raster(way),
+        };
+        let both = [
+            of_cut(first, descs[0], left, FLOATS, Raster::Tiles),
+            of_cut(second, descs[1], right, unorm, Raster::Quad),
+        ];
+        for (planes, hides) in [(1, false), (2, false), (2, true), (0, true)] {
+            let clip = common::clip(&gaussians, planes, ClipOp::And);
+            let state = LayerState::default().visible(!hides);
+            scene.set_layer_state(0, state).expect("a state");
+            let usual = Settings::default();
+            cut.configure(&scene, &clip, &usual).expect("a cut");
+            let cut = RefCell::new(&mut cut);
+            let prepare = |of: &OfCut, cmd| {
+                let (renderer, prepared) = &mut *of.eye.borrow_mut();
+                let mut cut = cut.borrow_mut();
+                // SAFETY: recording outside a scope, and all is waited for.
+                unsafe { cut.prepare(cmd) }.expect("records once");
+                let frame = renderer.configure(&scene, &of.camera, &**cut, &of.settings);
+                let frame = frame.expect("configures");
+                assert!(frame.skipped().contains(&"clip"), "the cut has found it");
+                // SAFETY: the same.
+                let frame = unsafe { renderer.prepare(cmd, &scene, None, frame) };
+                *prepared = Some(frame.expect("prepares"));
+            };
+            let draw = |of: &OfCut, cmd| {
+                let (renderer, prepared) = &mut *of.eye.borrow_mut();
+                of.canvas
+                    .viewport(cmd, 0, 0, (of.camera.width, of.camera.height));
+                let prepared = prepared.as_ref().expect("it was prepared");
+                // SAFETY: inside the scope of the canvas that the renderer was made for.
+                unsafe { renderer.draw(cmd, [0.0; 2], prepared) }.expect("draws");
+            };
+            let [one, two] = &both;
+            let drawn = Canvas::draw_together(&mut [
+                (
+                    &one.canvas,
+                    &mut [(&mut |cmd| prepare(one, cmd), &mut |cmd| draw(one, cmd))],
+                ),
+                (
+                    &two.canvas,
+                    &mut [(&mut |cmd| prepare(two, cmd), &mut |cmd| draw(two, cmd))],
+                ),
+            ]);
+            for (of, [pixels, _]) in both.iter().zip(drawn) {
+                // The same by a renderer that is given the clip.
+                let mut eye = of.eye.borrow_mut();
+                let renderer = eye.0.sharing(of.desc).expect("another");
+                eye.1 = None;
+                let alone = RefCell::new((renderer, None));
+                let [expected, _] = of.canvas.draw(
+                    |cmd| {
+                        let (renderer, prepared) = &mut *alone.borrow_mut();
+                        let frame = renderer.configure(&scene, &of.camera, &clip, &of.settings);
+                        // SAFETY: as above.
+                        let frame = unsafe {
+                            renderer.prepare(cmd, &scene, None, frame.expect("configures"))
+                        };
+                        *prepared = Some(frame.expect("prepares"));
+                    },
+                    |cmd| {
+                        let (renderer, prepared) = &mut *alone.borrow_mut();
+                        of.canvas
+                            .viewport(cmd, 0, 0, (of.camera.width, of.camera.height));
+                        // SAFETY: as above.
+                        unsafe { renderer.draw(cmd, [0.0; 2], prepared.as_ref().expect("it")) }
+                            .expect("draws");
+                    },
+                );
+                assert!(
+                    pixels == expected,
+                    "{planes} planes, hidden {hides}, {:?}",
+                    of.camera
+                );
+                let shows = expected.iter().any(|pixel| pixel[3] > 0.5);
+                assert_eq!(shows, !hides);
+            }
+        }
+    });
+}
+
+#[test]
+fn frames_of_a_cut_that_is_not_theirs_are_refused() {
+    let gaussians = generate(Kind::General, 300, 5);
+    let [camera, _] = eyes(&gaussians);
+    with_host(true, |_, device| {
+        let scene = SceneBuffers::upload(device, &gaussians, ShFormat::Float).expect("uploads");
+        let mut renderer = Renderer::new(device, desc()).expect("a renderer");
+        let mut cut = Cut::new(&renderer);
+        let usual = Settings::default();
+        let mut said = Vec::new();
+        let mut say = |refused: rara::Error| said.push(refused.to_string());
+        say(renderer
+            .configure(&scene, &camera, &cut, &usual)
+            .expect_err("nothing is cut"));
+        let recorded = device.submit_and_wait(|cmd| {
+            // SAFETY: recording outside a scope, and all is waited for.
+            say(unsafe { cut.prepare(cmd) }.expect_err("nothing is cut"));
+            let [one, two] = [1, 2].map(|planes| common::clip(&gaussians, planes, ClipOp::And));
+            cut.configure(&scene, &one, &usual)?;
+            let frame = renderer.configure(&scene, &camera, &cut, &usual)?;
+            // SAFETY: the same.
+            say(unsafe { renderer.prepare(cmd, &scene, None, frame) }.expect_err("not recorded"));
+            // SAFETY: the same.
+            unsafe { cut.prepare(cmd)? };
+            let frame = renderer.configure(&scene, &camera, &cut, &usual)?;
+            cut.configure(&scene, &two, &usual)?;
+            // SAFETY: the same.
+            unsafe { cut.prepare(cmd)? };
+            // SAFETY: the same.
+            say(unsafe { renderer.prepare(cmd, &scene, None, frame) }.expect_err("it has moved"));
+            let sectioned = camera.clip_near(Some(1.0));
+            say(renderer
+                .configure(&scene, &sectioned, &cut, &usual)
+                .expect_err("another cut"));
+            Ok(())
+        });
+        recorded.expect("submits");
+        let parts = [
+            "not configured",
+            "configured",
+            "Cut::prepare",
+            "Cut::prepare",
+            "near or far plane",
+        ];
+        assert_eq!(said.len(), parts.len());
+        for (said, part) in said.iter().zip(parts) {
+            assert!(said.contains(part), "{said}");
+        }
+    });
+}

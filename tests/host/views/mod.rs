@@ -14,8 +14,8 @@ use rara::glam::DVec3;
 use rara::gpu::Bindings;
 use rara::scene::{Kind, generate};
 use rara::{
-    Camera, Clip, ClipOp, Gaussians, Picture, Raster, Renderer, RendererDesc, SceneBuffers,
-    Settings, ShFormat,
+    Camera, Clip, ClipOp, Cut, Gaussians, LayerState, Picture, Raster, Renderer, RendererDesc,
+    SceneBuffers, Settings, ShFormat,
 };
 
 const FLOATS: vk::Format = vk::Format::R32G32B32A32_SFLOAT;

@@ -1,6 +1,7 @@
 //! Layers in their places, with their colours, opacities and clips.
 
 use super::*;
+use rara::SortBy;
 
 /// The truth knows nothing of layers: it draws Gaussians that were moved, turned, scaled and faded one by one.
 #[test]
@@ -28,18 +29,18 @@ fn a_placed_layer_is_its_gaussians_placed() {
     // Also from within, where splats are large and behind the eye.
     cameras[1].eye = 0.3 * cameras[1].eye + 0.7 * rara::Bounds::of(&moved).centre();
     for camera in cameras {
-        for (mode, planes, op) in [
-            (Mode::None, 0, ClipOp::And),
-            (Mode::Exact, 1, ClipOp::And),
-            (Mode::Exact, 2, ClipOp::Or),
-            (Mode::Rara, 1, ClipOp::And),
+        for (mode, planes, op, by) in [
+            (Mode::None, 0, ClipOp::And, SortBy::Distance),
+            (Mode::Exact, 1, ClipOp::And, SortBy::Depth),
+            (Mode::Exact, 2, ClipOp::Or, SortBy::Depth),
+            (Mode::Rara, 1, ClipOp::And, SortBy::Distance),
         ] {
             let clip = common::clip(&moved, planes, op);
+            let settings = Settings::default().mode(mode).sort_by(Some(by));
             for raster in common::rasters(headless.device()) {
-                let settings = Settings::default().mode(mode).raster(raster);
+                let settings = settings.raster(raster);
                 common::check(&mut headless, "placed", &moved, &camera, &clip, &settings);
             }
-            let settings = Settings::default().mode(mode);
             let truth = rara_reference::render::<f64>(&moved, &camera, &clip, &settings);
             let twin = rara_reference::render::<f64>(layers.clone(), &camera, &clip, &settings);
             common::assert_agrees("the twin", &twin.picture, &truth.picture);

@@ -2,9 +2,10 @@
 
 use serde_json::Value;
 
-use super::super::Failure;
+use super::super::{Failure, list};
 use super::buffers::Buffers;
-use super::{index, list};
+use super::index;
+use crate::ply::Number;
 use rara_base::counted::counted;
 use rara_base::error::shortened;
 
@@ -13,58 +14,25 @@ pub(super) struct Accessor {
     bytes: Vec<u8>,
     /// Bytes from one element to the next.
     stride: usize,
-    kind: ComponentType,
+    kind: Number,
     parts: usize,
-    normalized: bool,
+    /// What they are divided by.
+    most: Option<f64>,
     /// The elements that have other numbers, which ascend, and the bytes of these one behind the other.
     sparse: (Vec<u64>, Vec<u8>),
 }
 
-#[derive(Clone, Copy)]
-enum ComponentType {
-    I8,
-    U8,
-    I16,
-    U16,
-    U32,
-    F32,
-}
-
-impl ComponentType {
-    /// The type that something's numbers are of.
-    fn from_json(of: &Value) -> Option<Self> {
-        Some(match index(of, "componentType")? {
-            5120 => Self::I8,
-            5121 => Self::U8,
-            5122 => Self::I16,
-            5123 => Self::U16,
-            5125 => Self::U32,
-            5126 => Self::F32,
-            _ => return None,
-        })
-    }
-
-    fn size(self) -> usize {
-        match self {
-            Self::I8 | Self::U8 => 1,
-            Self::I16 | Self::U16 => 2,
-            Self::U32 | Self::F32 => 4,
-        }
-    }
-
-    /// The number of these bytes, and what it is divided by where it is normalised.
-    fn number(self, bytes: &[u8]) -> (f64, f64) {
-        let two = || [bytes[0], bytes[1]];
-        let four = || [bytes[0], bytes[1], bytes[2], bytes[3]];
-        match self {
-            Self::I8 => (f64::from(bytes[0] as i8), 127.0),
-            Self::U8 => (f64::from(bytes[0]), 255.0),
-            Self::I16 => (f64::from(i16::from_le_bytes(two())), 32767.0),
-            Self::U16 => (f64::from(u16::from_le_bytes(two())), 65535.0),
-            Self::U32 => (f64::from(u32::from_le_bytes(four())), f64::from(u32::MAX)),
-            Self::F32 => (f64::from(f32::from_le_bytes(four())), 1.0),
-        }
-    }
+/// The type that something's numbers are of, and what normalised ones are divided by, which floats never are.
+fn component_type(of: &Value) -> Option<(Number, Option<f64>)> {
+    Some(match index(of, "componentType")? {
+        5120 => (Number::I8, Some(127.0)),
+        5121 => (Number::U8, Some(255.0)),
+        5122 => (Number::I16, Some(32767.0)),
+        5123 => (Number::U16, Some(65535.0)),
+        5125 => (Number::U32, Some(u32::MAX.into())),
+        5126 => (Number::F32, None),
+        _ => return None,
+    })
 }
 
 impl Accessor {
@@ -92,7 +60,7 @@ impl Accessor {
             )));
         }
         let no_type = || wrong("is of no known type of numbers");
-        let kind = ComponentType::from_json(accessor).ok_or_else(no_type)?;
+        let (kind, most) = component_type(accessor).ok_or_else(no_type)?;
         let found = match accessor.get("type").and_then(Value::as_str) {
             Some("SCALAR") => 1,
             Some("VEC2") => 2,
@@ -123,9 +91,9 @@ impl Accessor {
             let [indices, values] = ["indices", "values"].map(|key| part.get(key));
             let replaced = index(part, "count").ok_or_else(no_part)?;
             let (indices, values) = indices.zip(values).ok_or_else(no_part)?;
-            let kind = ComponentType::from_json(indices).ok_or_else(no_type)?;
+            let (kind, _) = component_type(indices).ok_or_else(no_type)?;
             let (places, stride) = read(indices, replaced, kind.size())?;
-            let place = |at: usize| kind.number(&places[at * stride..]).0 as u64;
+            let place = |at: usize| kind.decode(&places[at * stride..], false) as u64;
             sparse.0 = (0..replaced as usize).map(place).collect();
             let is_in_order = sparse.0.windows(2).all(|pair| pair[0] < pair[1]);
             if !is_in_order || sparse.0.last().is_some_and(|last| *last >= count) {
@@ -144,9 +112,8 @@ impl Accessor {
             stride,
             kind,
             parts: found,
-            // Of floats it means nothing.
-            normalized: !matches!(kind, ComponentType::F32)
-                && accessor.get("normalized").and_then(Value::as_bool) == Some(true),
+            most: most
+                .filter(|_| accessor.get("normalized").and_then(Value::as_bool) == Some(true)),
             sparse,
         })
     }
@@ -162,12 +129,8 @@ impl Accessor {
             Ok(at) => &values[at * self.parts * size..],
             Err(_) => &self.bytes[element as usize * self.stride..],
         };
-        let (number, most) = self.kind.number(&bytes[part * size..]);
-        if self.normalized {
-            (number / most).max(-1.0)
-        } else {
-            number
-        }
+        let number = self.kind.decode(&bytes[part * size..], false);
+        self.most.map_or(number, |most| (number / most).max(-1.0))
     }
 }
 

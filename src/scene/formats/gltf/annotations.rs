@@ -4,8 +4,9 @@ use std::collections::BTreeMap;
 
 use serde_json::Value;
 
+use super::super::list;
+use super::MARKS;
 use super::nodes::Drawn;
-use super::{MARKS, list};
 use crate::annotations::{AnnotatedNode, Annotations, Words};
 
 /// The annotations of the Gaussians that have been read.

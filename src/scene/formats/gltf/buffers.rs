@@ -2,7 +2,6 @@
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
-use std::path::Path;
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD_NO_PAD;
@@ -14,8 +13,8 @@ use meshoptimizer_rs::{Error, Workspace};
 use percent_encoding::percent_decode_str;
 use serde_json::Value;
 
-use super::super::{Failure, beside};
-use super::{index, list};
+use super::super::{Failure, Files, list};
+use super::size;
 use rara_base::counted::counted;
 use rara_base::error::shortened;
 
@@ -26,25 +25,21 @@ const MESHOPT: &str = "_meshopt_compression";
 pub(super) struct Buffers<'a> {
     uris: Vec<Option<&'a str>>,
     binary: Option<&'a [u8]>,
-    folder: Option<&'a Path>,
+    files: Files<'a>,
     read: BTreeMap<usize, Cow<'a, [u8]>>,
     /// The bytes of views that were compressed.
     decoded: BTreeMap<u64, Vec<u8>>,
 }
 
 impl<'a> Buffers<'a> {
-    pub(super) fn new(
-        document: &'a Value,
-        binary: Option<&'a [u8]>,
-        folder: Option<&'a Path>,
-    ) -> Self {
+    pub(super) fn new(document: &'a Value, binary: Option<&'a [u8]>, files: Files<'a>) -> Self {
         let buffers = list(document, "buffers").iter();
         Self {
             uris: buffers
                 .map(|buffer| buffer.get("uri").and_then(Value::as_str))
                 .collect(),
             binary,
-            folder,
+            files,
             read: BTreeMap::new(),
             decoded: BTreeMap::new(),
         }
@@ -61,7 +56,7 @@ impl<'a> Buffers<'a> {
                     Some(data) => Cow::Owned(from_data(data)?),
                     None => {
                         let name = percent_decode_str(uri).decode_utf8_lossy();
-                        Cow::Owned(beside(&name, self.folder)?)
+                        Cow::Owned(self.files.get(&name)?)
                     }
                 },
             };
@@ -78,10 +73,9 @@ impl<'a> Buffers<'a> {
 
     /// The bytes that a view, or what it says of its compression, has in its buffer.
     fn bytes(&mut self, of: &Value, wrong: &dyn Fn(&str) -> Failure) -> Result<&[u8], Failure> {
-        let size = |key: &str| index(of, key).and_then(|size| usize::try_from(size).ok());
-        let first = size("byteOffset").unwrap_or(0);
-        let end = size("byteLength").and_then(|length| first.checked_add(length));
-        let buffer = size("buffer").ok_or_else(|| wrong("has no buffer"))?;
+        let first = size(of, "byteOffset").unwrap_or(0);
+        let end = size(of, "byteLength").and_then(|length| first.checked_add(length));
+        let buffer = size(of, "buffer").ok_or_else(|| wrong("has no buffer"))?;
         let bytes = self.read(buffer)?;
         let bytes = end.and_then(|end| bytes.get(first..end));
         bytes.ok_or_else(|| wrong("reaches beyond its buffer, which may be cut off"))
@@ -102,10 +96,8 @@ impl<'a> Buffers<'a> {
             ))
         };
         let no_layout = || wrong(&format!("has no count, byteStride or mode of {name}"));
-        let size = |key: &str| index(part, key).and_then(|size| usize::try_from(size).ok());
-        let (count, stride) = size("count")
-            .zip(size("byteStride"))
-            .ok_or_else(no_layout)?;
+        let layout = size(part, "count").zip(size(part, "byteStride"));
+        let (count, stride) = layout.ok_or_else(no_layout)?;
         let mode = part.get("mode").and_then(Value::as_str);
         let decode = match mode.ok_or_else(no_layout)? {
             "ATTRIBUTES" => decode_vertex_buffer,
@@ -149,7 +141,7 @@ impl<'a> Buffers<'a> {
             .ok()
             .and_then(|at| list(document, "bufferViews").get(at));
         let view = view.ok_or_else(|| wrong("is not there"))?;
-        let stride = index(view, "byteStride").and_then(|size| usize::try_from(size).ok());
+        let stride = size(view, "byteStride");
         let extensions = view.get("extensions").and_then(Value::as_object);
         let compression = extensions
             .into_iter()

@@ -7,7 +7,6 @@ mod nodes;
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
-use std::path::Path;
 
 use glam::{DQuat, DVec3};
 use serde_json::Value;
@@ -16,17 +15,20 @@ use self::accessor::Accessor;
 use self::annotations::AnnotationsReader;
 use self::buffers::Buffers;
 use self::nodes::Transform;
-use super::super::assemble::{ColumnForm, OPACITY, ROTATION, SCALES, SH};
-use super::super::{SH_0, SortBy, sh_coefficients};
+use super::super::assemble::{ColumnForm, OPACITY, ROTATION, SCALES, SH, SLOTS, room_with};
+use super::super::input::ALL;
+use super::super::{Property, SH_0, SortBy, sh_coefficients};
 use super::bytes::Bytes;
-use super::{Failure, FormatOutput, json, room, spz};
+use super::{Failure, Files, FormatOutput, json, list, spz};
 use crate::placement::Placement;
 use rara_base::counted::counted;
 use rara_base::error::shortened;
+use rara_base::rows;
 
 /// The extension's name, which attributes begin with.
 pub(super) const EXTENSION: &str = "KHR_gaussian_splatting";
-/// Where a primitive's extras have this project's marks of how its Gaussians were trained, and the one that only glTF lacks.
+/// The member of a primitive's extras that has this project's marks of training, and the mark that other formats have by
+/// themselves.
 pub(super) const MARKS: &str = "rara";
 pub(super) const ANTIALIASED: &str = "antialiased";
 /// Its names of linear light, and of colours as displays store them.
@@ -34,6 +36,14 @@ pub(super) const LINEAR: &str = "lin_rec709_display";
 pub(super) const STORED: &str = "srgb_rec709_display";
 /// What names of its compression begin with; drafts have a number behind.
 const SPZ: &str = "KHR_gaussian_splatting_compression_spz";
+
+/// Members of the extension, the words for them that are known, and how Gaussians of another word are drawn.
+const WORDS: [(&str, &[&str], &str, &str); 4] = rows! {
+    "kernel", &["ellipse"], "the kernel", "is drawn as an ellipse";
+    "projection", &["perspective"], "the projection", "is drawn as perspective";
+    "sortingMethod", &["cameraDistance"], "the order", "is drawn by distance";
+    "colorSpace", &[LINEAR, STORED], "colours of the space", "are drawn as sRGB";
+};
 
 /// Gaussians that a byte of the buffers may be drawn as: even one of a compressed scene is no more than 52.
 const MOST_DRAWN: u64 = 64;
@@ -46,7 +56,11 @@ pub(super) fn turn() -> DQuat {
 }
 
 /// Reads a `.glb`.
-pub(super) fn read_binary(bytes: &[u8], folder: Option<&Path>) -> Result<FormatOutput, Failure> {
+pub(super) fn read_binary(
+    bytes: &[u8],
+    files: Files<'_>,
+    asked: &[&str],
+) -> Result<FormatOutput, Failure> {
     let what = "the .glb";
     let mut bytes = Bytes(bytes);
     bytes.take(4, what)?;
@@ -69,7 +83,7 @@ pub(super) fn read_binary(bytes: &[u8], folder: Option<&Path>) -> Result<FormatO
         }
     }
     let document = document.ok_or_else(|| "the .glb has no JSON; get it again".to_owned())?;
-    let mut made = read_document(&document, binary, folder)?;
+    let mut made = read_document(&document, binary, files, asked)?;
     made.report.trailing_bytes = bytes.0.len() as u64;
     Ok(made)
 }
@@ -78,11 +92,12 @@ pub(super) fn read_binary(bytes: &[u8], folder: Option<&Path>) -> Result<FormatO
 pub(super) fn read_document(
     document: &Value,
     binary: Option<&[u8]>,
-    folder: Option<&Path>,
+    files: Files<'_>,
+    asked: &[&str],
 ) -> Result<FormatOutput, Failure> {
-    let mut buffers = Buffers::new(document, binary, folder);
+    let mut buffers = Buffers::new(document, binary, files);
     let mut whole = FormatOutput::default();
-    let (mut found, mut others, mut hidden) = (0_u64, 0_u64, 0_usize);
+    let (mut found, mut others, mut invisible, mut hidden) = (0_u64, 0_u64, 0_usize, 0_usize);
     let turned = Transform::Similar(Placement::new(DVec3::ZERO, turn(), 1.0)?);
     let mut meshes = BTreeMap::new();
     check_extensions(document)?;
@@ -95,6 +110,10 @@ pub(super) fn read_document(
         };
         found += mesh.splats.len() as u64;
         others += mesh.others;
+        if !drawn.is_visible {
+            invisible += mesh.splats.len();
+            continue;
+        }
         if drawn.transform.hides() {
             hidden += mesh.splats.len();
             continue;
@@ -105,7 +124,7 @@ pub(super) fn read_document(
             )));
         }
         for &(primitive, extension) in &mesh.splats {
-            let mut made = read_primitive(document, &mut buffers, primitive, extension)?;
+            let mut made = read_primitive(document, &mut buffers, (primitive, extension), asked)?;
             set_training(&mut made, primitive, extension);
             match turned.of_inner(&drawn.transform)? {
                 Transform::Similar(placement) => made.place(&placement),
@@ -123,11 +142,13 @@ pub(super) fn read_document(
         )));
     }
     whole.annotations = Some(annotations.finish());
-    if hidden > 0 {
-        whole.report.note(format!(
-            "left out {} of the glTF that are scaled to nothing",
-            counted(hidden, "primitive")
-        ));
+    for (count, why) in [(hidden, "are scaled to nothing"), (invisible, "nodes hide")] {
+        if count > 0 {
+            whole.report.note(format!(
+                "left out {} of the glTF that {why}",
+                counted(count, "primitive")
+            ));
+        }
     }
     for (key, one) in [("animations", "animation"), ("skins", "skin")] {
         let count = list(document, key).len();
@@ -171,6 +192,7 @@ fn check_extensions(document: &Value) -> Result<(), Failure> {
     let known = |name: &str| {
         name == EXTENSION
             || name == nodes::INSTANCES
+            || name == nodes::VISIBILITY
             || name.contains("compression")
             || HARMLESS.iter().any(|known| name.starts_with(known))
     };
@@ -214,22 +236,21 @@ impl<'a> Mesh<'a> {
     }
 }
 
-/// A list of an object; empty where there is none.
-fn list<'a>(object: &'a Value, key: &str) -> &'a [Value] {
-    let list = object.get(key).and_then(Value::as_array);
-    list.map(Vec::as_slice).unwrap_or_default()
-}
-
 /// An index or a count.
 fn index(object: &Value, key: &str) -> Option<u64> {
     object.get(key).and_then(Value::as_u64)
 }
 
+/// An index or a count of what is in memory.
+fn size(object: &Value, key: &str) -> Option<usize> {
+    usize::try_from(index(object, key)?).ok()
+}
+
 fn read_primitive(
     document: &Value,
     buffers: &mut Buffers<'_>,
-    primitive: &Value,
-    extension: &Value,
+    (primitive, extension): (&Value, &Value),
+    asked: &[&str],
 ) -> Result<FormatOutput, Failure> {
     let inner = [extension.get("extensions"), primitive.get("extensions")];
     let inner = inner
@@ -254,36 +275,11 @@ fn read_primitive(
             )));
         }
     }
-    let notes = [
-        ("kernel", "ellipse", "the kernel", "is drawn as an ellipse"),
-        (
-            "projection",
-            "perspective",
-            "the projection",
-            "is drawn as perspective",
-        ),
-        (
-            "sortingMethod",
-            "cameraDistance",
-            "the order",
-            "is drawn by distance",
-        ),
-    ];
-    let colours = extension.get("colorSpace").and_then(Value::as_str);
-    let unknown_colours = colours
-        .filter(|space| ![LINEAR, STORED].contains(space))
-        .map(|space| {
-            format!(
-                "colours of the space \"{}\" are drawn as sRGB",
-                shortened(space)
-            )
-        });
-    let notes = notes
-        .into_iter()
-        .filter_map(|(key, usual, what, is_drawn)| {
-            let found = extension.get(key)?.as_str()?;
-            (found != usual).then(|| format!("{what} \"{}\" {is_drawn}", shortened(found)))
-        });
+    let notes = WORDS.iter().filter_map(|(key, known, what, is_drawn)| {
+        let found = extension.get(*key)?.as_str()?;
+        let is_unknown = !known.contains(&found);
+        is_unknown.then(|| format!("{what} \"{}\" {is_drawn}", shortened(found)))
+    });
     let attributes = primitive.get("attributes");
     let count = count_of(document, attributes, "POSITION").ok_or_else(|| {
         "the Gaussians have no attribute POSITION with a count; export the scene again".to_owned()
@@ -325,6 +321,28 @@ fn read_primitive(
     if opacities.is_none() && colours.is_none() {
         return Err(Failure::Format(lacks(&own("OPACITY"))));
     }
+    let all = attributes.and_then(Value::as_object).into_iter().flatten();
+    let own: Vec<_> = all
+        .map(|(name, _)| &name[..])
+        .filter(|name| !is_read(name, degree))
+        .collect();
+    let mut properties = Vec::new();
+    let mut columns = Vec::new();
+    for name in own
+        .iter()
+        .filter(|name| asked.contains(name) || asked.contains(&ALL))
+    {
+        let is_number = |of: &Value| of.get("type").and_then(Value::as_str) == Some("SCALAR");
+        let accessor =
+            attribute(attributes, name).and_then(|at| list(document, "accessors").get(at));
+        if !asked.contains(name) && !accessor.is_some_and(is_number) {
+            continue;
+        }
+        columns.extend(get(name, 1)?);
+        let mut property = Property::new(*name, Vec::new());
+        property.single = accessor.and_then(|of| index(of, "componentType")) == Some(5126);
+        properties.push(property);
+    }
     check_drawn(count, buffers)?;
     // The text of the extension from January to April 2026 had logarithms, and today's has no negative scales.
     let has_logarithms = (0..count).any(|at| (0..3).any(|axis| scales.at(at, axis) < 0.0));
@@ -332,7 +350,11 @@ fn read_primitive(
         true => ColumnForm::LogScales,
         false => ColumnForm::Plain,
     };
-    let mut made = room(count, degree, form)?.make(|index, row| {
+    let read: Vec<_> = properties
+        .iter()
+        .map(|property| property.name.clone())
+        .collect();
+    let mut made = room_with(count, degree, form, properties)?.make(|index, row| {
         let index = index as u64;
         for axis in 0..3 {
             row[axis] = positions.at(index, axis);
@@ -357,27 +379,20 @@ fn read_primitive(
                 row[SH + 3 * coefficient + channel] = accessor.at(index, channel);
             }
         }
+        for (to, column) in row[SLOTS..].iter_mut().zip(&columns) {
+            *to = column.at(index, 0);
+        }
         Ok(())
     })?;
-    notes
-        .chain(unknown_colours)
-        .for_each(|note| made.report.note(note));
-    let left = attributes.and_then(Value::as_object).into_iter().flatten();
-    let left = left
-        .map(|(name, _)| &name[..])
-        .filter(|name| !is_read(name, degree));
+    notes.for_each(|note| made.report.note(note));
+    let left = own
+        .into_iter()
+        .filter(|name| !read.iter().any(|read| read == name));
     let parts = [("indices", "indices"), ("targets", "morph targets")];
     let parts = parts.iter().filter(|(key, _)| primitive.get(key).is_some());
-    let left: Vec<_> = left
-        .chain(parts.map(|(_, what)| *what))
-        .map(shortened)
-        .collect();
-    if !left.is_empty() {
-        made.report.note(format!(
-            "left out what the Gaussians have beside what is drawn: {}",
-            left.join(", ")
-        ));
-    }
+    let left = left.chain(parts.map(|(_, what)| *what)).map(shortened);
+    let what = "the Gaussians have beside what is drawn";
+    made.report.left_out(what, &left.collect::<Vec<_>>());
     if has_logarithms {
         made.report.note(
             "took the scales for logarithms, as an older text of the extension has them, since some are negative".into(),
@@ -418,7 +433,7 @@ fn set_training(made: &mut FormatOutput, primitive: &Value, extension: &Value) {
 
 /// The accessor of an attribute.
 fn attribute(attributes: Option<&Value>, name: &str) -> Option<usize> {
-    usize::try_from(index(attributes?, name)?).ok()
+    size(attributes?, name)
 }
 
 /// The elements that an attribute's accessor says to have.

@@ -3,14 +3,17 @@
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use serde_json::Value;
 
-use super::super::Failure;
+use super::super::{Failure, list};
 use super::accessor::Accessor;
 use super::buffers::Buffers;
-use super::{attribute, count_of, list};
+use super::{attribute, count_of};
 use crate::placement::Placement;
 
 /// The extension of a node that draws its mesh several times, each time with a transform of its own.
 pub(super) const INSTANCES: &str = "EXT_mesh_gpu_instancing";
+
+/// The extension of a node by which it hides itself and what is below it.
+pub(super) const VISIBILITY: &str = "KHR_node_visibility";
 
 /// How far the sides of a node's axes may be from each other, or from a right angle, to be one scale and a turn.
 const EVEN: f64 = 1e-4;
@@ -19,7 +22,7 @@ const EVEN: f64 = 1e-4;
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Transform {
     Similar(Placement),
-    /// What shears, mirrors, or scales unlike in different directions.
+    /// A transform that shears, mirrors, or scales non-uniformly.
     Other(DAffine3),
 }
 
@@ -64,6 +67,8 @@ pub(super) struct Drawn {
     pub(super) mesh: usize,
     /// Where it stands in the scene.
     pub(super) transform: Transform,
+    /// False where its node, or one above that, is hidden.
+    pub(super) is_visible: bool,
 }
 
 /// The meshes that the scene draws, and the parent of each node that has one.
@@ -80,6 +85,7 @@ pub(super) fn meshes(
             node: None,
             mesh,
             transform: Transform::IDENTITY,
+            is_visible: true,
         });
         return Ok((drawn.collect(), Vec::new()));
     }
@@ -97,8 +103,10 @@ pub(super) fn meshes(
     let mut seen = vec![false; nodes.len()];
     let mut parents = vec![None; nodes.len()];
     let roots = indices(scene, "nodes")?.into_iter().rev();
-    let mut open: Vec<(usize, Transform)> = roots.map(|node| (node, Transform::IDENTITY)).collect();
-    while let Some((at, parent)) = open.pop() {
+    let mut open: Vec<(usize, Transform, bool)> = roots
+        .map(|node| (node, Transform::IDENTITY, true))
+        .collect();
+    while let Some((at, parent, is_shown)) = open.pop() {
         let wrong = |what: &str| {
             Failure::Format(format!(
                 "node {at} of the glTF {what}; export the scene again"
@@ -108,6 +116,10 @@ pub(super) fn meshes(
         if std::mem::replace(&mut seen[at], true) {
             return Err(wrong("is in the scene twice, or its own child"));
         }
+        let visibility = node
+            .get("extensions")
+            .and_then(|all| all.get(VISIBILITY)?.get("visible"));
+        let is_visible = is_shown && visibility.and_then(Value::as_bool) != Some(false);
         let own = parent.of_inner(&transform(node).map_err(wrong)?)?;
         if let Some(mesh) = node.get("mesh") {
             let mesh = number(mesh).ok_or_else(|| wrong("has a mesh that is no number"))?;
@@ -116,6 +128,7 @@ pub(super) fn meshes(
                     node: Some(at),
                     mesh,
                     transform,
+                    is_visible,
                 });
             };
             match node.get("extensions").and_then(|all| all.get(INSTANCES)) {
@@ -131,7 +144,7 @@ pub(super) fn meshes(
             if let Some(parent) = parents.get_mut(child) {
                 *parent = Some(at);
             }
-            open.push((child, own));
+            open.push((child, own, is_visible));
         }
     }
     Ok((found, parents))
@@ -156,10 +169,7 @@ fn numbers<const N: usize>(node: &Value, key: &str) -> Result<Option<[f64; N]>, 
     let Some(value) = node.get(key) else {
         return Ok(None);
     };
-    let all = value.as_array().and_then(|all| {
-        let all: Option<Vec<f64>> = all.iter().map(Value::as_f64).collect();
-        all?.try_into().ok()
-    });
+    let all = super::super::numbers(value).and_then(|all| all.try_into().ok());
     let wrong = "has a matrix, translation, rotation or scale that is not of 16, 3, 4 or 3 numbers";
     all.map(Some).ok_or(wrong)
 }

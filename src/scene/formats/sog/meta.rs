@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 use super::super::super::Training;
-
+use super::super::{numbers, unread_members};
 use rara_base::counted::counted;
 use rara_base::error::shortened;
 
@@ -47,12 +47,7 @@ impl Range {
 }
 
 fn ends(part: &Value, name: &str, channels: usize) -> Result<Vec<[f64; 2]>, String> {
-    let side = |key: &str| -> Option<Vec<f64>> {
-        match part.get(key)? {
-            Value::Array(all) => all.iter().map(Value::as_f64).collect(),
-            one => Some(vec![one.as_f64()?]),
-        }
-    };
+    let side = |key: &str| numbers(part.get(key)?);
     match (side("mins"), side("maxs")) {
         (Some(low), Some(high)) if low.len() == channels && high.len() == channels => {
             Ok(low.into_iter().zip(high).map(<[f64; 2]>::from).collect())
@@ -81,6 +76,7 @@ impl Harmonics<'_> {
             3 => 1,
             8 => 2,
             15 => 3,
+            24 => 4,
             _ => 0,
         };
         let fits = width.is_multiple_of(super::CENTROIDS) && degree > 0;
@@ -88,8 +84,8 @@ impl Harmonics<'_> {
             return Ok(degree);
         }
         Err(format!(
-            "the picture of spherical harmonics is {} wide, which {} does not fit: 192, 512 and 960 are of \
-             degree 1, 2 and 3; export the scene again",
+            "the picture of spherical harmonics is {} wide, which {} does not fit: 192, 512, 960 and 1536 are of \
+             degree 1, 2, 3 and 4; export the scene again",
             counted(width, "pixel"),
             self.bands.map_or("any degree".into(), |bands| format!(
                 "the degree {bands} of meta.json"
@@ -162,30 +158,9 @@ impl<'a> Meta<'a> {
             None => None,
             Some(part) => {
                 let [centroids, labels] = files(part, "shN")?;
-                let sets = match (part.get("count"), part.get("bands")) {
-                    (None, bands) => Some((None, bands)),
-                    (Some(count), bands) => {
-                        let count = count
-                            .as_u64()
-                            .filter(|count| (1..=super::MOST_SETS).contains(count));
-                        count.map(|count| (Some(count), bands))
-                    }
-                };
-                let (count, bands) = sets.ok_or(
-                    "the \"count\" of shN is no number from 1 to 65536; export the scene again",
-                )?;
-                let bands = match bands.map(|bands| bands.as_u64().filter(|n| (1..=3).contains(n)))
-                {
-                    Some(None) => {
-                        return Err(
-                            "the \"bands\" of shN are not 1, 2 or 3; export the scene again".into(),
-                        );
-                    }
-                    bands => bands.flatten(),
-                };
                 Some(Harmonics {
-                    count,
-                    bands,
+                    count: whole(part, "count", super::MOST_SETS)?,
+                    bands: whole(part, "bands", 4)?,
                     values: Range::from_json(part, "shN", 1)?,
                     centroids,
                     labels,
@@ -215,10 +190,30 @@ impl<'a> Meta<'a> {
     }
 }
 
+/// The names of what a `meta.json` has beside that.
+pub(super) fn others(document: &Value) -> Vec<String> {
+    unread_members(document, |name| match name {
+        "version" | "asset" | "count" | "antialias" | "model" => true,
+        "means" | "scales" | "quats" | "sh0" | "shN" => true,
+        _ => Training::is_mark(name),
+    })
+}
+
 fn part<'a>(document: &'a Value, name: &str) -> Result<&'a Value, String> {
     document
         .get(name)
         .ok_or_else(|| format!("meta.json has no \"{name}\"; export the scene again"))
+}
+
+/// A number of spherical harmonics' `shN` from 1 to the most, if it is said.
+fn whole(part: &Value, key: &str, most: u64) -> Result<Option<u64>, String> {
+    let Some(said) = part.get(key) else {
+        return Ok(None);
+    };
+    let number = said.as_u64().filter(|number| (1..=most).contains(number));
+    number.map(Some).ok_or_else(|| {
+        format!("the \"{key}\" of shN is no number from 1 to {most}; export the scene again")
+    })
 }
 
 /// The names of an attribute's pictures.

@@ -1,20 +1,17 @@
 //! SOG: attributes as the pixels of WebP pictures, and a `meta.json` that says what their values mean.
 
-mod archive;
 mod meta;
 mod picture;
 mod streamed;
 
-use std::path::Path;
-
 use serde_json::Value;
 
-pub(super) use self::archive::Archive;
 use self::meta::{Meta, Range};
 use self::picture::Picture;
 use super::super::assemble::{ColumnForm, OPACITY, ROTATION, SCALES, SH, unit_quaternion};
-use super::{Failure, FormatOutput, beside, json, room};
+use super::{Failure, Files, FormatOutput, room};
 use rara_base::counted::counted;
+use rara_base::error::shortened;
 
 pub(super) use self::streamed::read as read_streamed;
 
@@ -30,26 +27,9 @@ pub(super) const LARGEST: u8 = 252;
 const MOST_OF_BYTE: u64 = 16;
 const FEW: u64 = 1 << 16;
 
-/// Reads an archive.
-pub(super) fn read_archive(bytes: &[u8]) -> Result<FormatOutput, Failure> {
-    let archive = Archive::open(bytes)?;
-    let document = json(&archive.get("meta.json")?)?;
-    read(&document, &|name| archive.get(name))
-}
-
-/// Reads a `meta.json`, whose pictures are files beside it.
-pub(super) fn read_folder(
-    document: &Value,
-    folder: Option<&Path>,
-) -> Result<FormatOutput, Failure> {
-    read(document, &|name| beside(name, folder))
-}
-
-/// Reads what a `meta.json` describes; `get` gives the file of a name.
-fn read(
-    document: &Value,
-    get: &dyn Fn(&str) -> Result<Vec<u8>, Failure>,
-) -> Result<FormatOutput, Failure> {
+/// Reads what a `meta.json` describes, of whose pictures these are the files.
+pub(super) fn read(document: &Value, pictures: Files<'_>) -> Result<FormatOutput, Failure> {
+    let get = |name| pictures.get(name);
     let meta = Meta::from_json(document)?;
     let count = meta.count;
     let names = [
@@ -59,10 +39,7 @@ fn read(
         meta.quats,
         meta.sh0.0,
     ];
-    let mut files = Vec::new();
-    for name in names {
-        files.push(get(name)?);
-    }
+    let files = names.map(get).into_iter().collect::<Result<Vec<_>, _>>()?;
     let stored: usize = files.iter().map(Vec::len).sum();
     if count > MOST_OF_BYTE * stored as u64 + FEW {
         return Err(Failure::Format(format!(
@@ -76,24 +53,24 @@ fn read(
         if (picture.pixels().len() as u64) < count {
             return Err(Failure::Format(format!(
                 "the picture {} has {} for its {}; get the scene again",
-                rara_base::error::shortened(name),
+                shortened(name),
                 counted(picture.pixels().len(), "pixel"),
                 counted(count, "Gaussian")
             )));
         }
         Ok(picture)
     };
-    let mut planes = Vec::new();
-    for (name, file) in names.into_iter().zip(&files) {
-        planes.push(plane(name, file)?);
-    }
+    let planes = names.iter().zip(&files);
+    let planes: Vec<_> = planes
+        .map(|(name, file)| plane(name, file))
+        .collect::<Result<_, _>>()?;
     drop(files);
     let [low, high, scales, quats, sh0] = [0, 1, 2, 3, 4].map(|at| &planes[at]);
     let harmonics = match &meta.harmonics {
         Some(harmonics) => {
             let centroids = get(harmonics.centroids)?;
             let most = harmonics.count.unwrap_or(MOST_SETS) as usize;
-            let most = CENTROIDS * 15 * most.div_ceil(CENTROIDS);
+            let most = CENTROIDS * 24 * most.div_ceil(CENTROIDS);
             let centroids = Picture::decode(&centroids, harmonics.centroids, most)?;
             let degree = harmonics.degree(centroids.width)?;
             let rows = centroids.pixels().len() / centroids.width;
@@ -102,7 +79,7 @@ fn read(
             if room < sets {
                 return Err(Failure::Format(format!(
                     "the picture {} has room for {room} of {sets} sets of spherical harmonics; get the scene again",
-                    rara_base::error::shortened(harmonics.centroids),
+                    shortened(harmonics.centroids),
                 )));
             }
             Some((
@@ -115,13 +92,14 @@ fn read(
         }
         None => None,
     };
-    let degree = harmonics.as_ref().map_or(0, |(_, _, degree, ..)| *degree);
+    let stored_degree = harmonics.as_ref().map_or(0, |(_, _, degree, ..)| *degree);
+    let degree = stored_degree.min(3);
     let stored = if meta.is_first {
         ColumnForm::Logarithms
     } else {
         ColumnForm::LogScales
     };
-    let made = room(count, degree, stored)?.make(|index, row| {
+    let made = room(count, stored_degree, stored)?.make(|index, row| {
         for axis in 0..3 {
             let value = u16::from_le_bytes([low.at(index)[axis], high.at(index)[axis]]);
             let [least, most] = meta.bounds[axis];
@@ -144,7 +122,7 @@ fn read(
         let part = |byte: u8| (f64::from(byte) / 255.0 - 0.5) * std::f64::consts::SQRT_2;
         let rotation = unit_quaternion(largest.into(), [part(a), part(b), part(c)]);
         row[ROTATION..OPACITY].copy_from_slice(&rotation);
-        if let Some((harmonics, sets, degree, centroids, labels)) = &harmonics {
+        if let Some((harmonics, sets, stored, centroids, labels)) = &harmonics {
             let [low, high, ..] = labels.at(index);
             let label = usize::from(u16::from_le_bytes([low, high]));
             if label as u64 >= *sets {
@@ -152,9 +130,9 @@ fn read(
                     "Gaussian {index} has the spherical harmonics of set {label}, of {sets} sets; get the scene again"
                 )));
             }
-            let coefficients = super::super::sh_coefficients(*degree) - 1;
-            let first = label / CENTROIDS * centroids.width + label % CENTROIDS * coefficients;
-            for coefficient in 0..coefficients {
+            let stored = super::super::sh_coefficients(*stored) - 1;
+            let first = label / CENTROIDS * centroids.width + label % CENTROIDS * stored;
+            for coefficient in 0..super::super::sh_coefficients(degree) - 1 {
                 let pixel = centroids.at(first + coefficient);
                 for channel in 0..3 {
                     let value = harmonics.values.value(0, pixel[channel]);
@@ -165,6 +143,7 @@ fn read(
         Ok(())
     })?;
     let mut made = FormatOutput::from(made);
+    made.others = meta::others(document);
     made.gaussians.train(meta.training);
     Ok(made)
 }

@@ -1,24 +1,20 @@
 //! Streamed SOG: a tree of places, each with Gaussians of several levels of detail in folders of SOG.
 
 use std::collections::{BTreeMap, HashSet};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use serde_json::Value;
 
-use super::super::{Failure, FormatOutput, beside, json};
+use super::super::files::Archive;
+use super::super::{Failure, Files, FormatOutput, json, list};
 
 /// Reads the finest level that each place has, and the surroundings.
-pub(in super::super) fn read(
-    document: &Value,
-    folder: Option<&Path>,
-) -> Result<FormatOutput, Failure> {
-    let names = document.get("filenames").and_then(Value::as_array);
-    let names = names.map(Vec::as_slice).unwrap_or_default();
+pub(in super::super) fn read(document: &Value, files: Files<'_>) -> Result<FormatOutput, Failure> {
+    let names = list(document, "filenames");
     let mut pieces: BTreeMap<usize, Vec<[u64; 2]>> = BTreeMap::new();
     let mut nodes: Vec<&Value> = document.get("tree").into_iter().collect();
     while let Some(node) = nodes.pop() {
-        let children = node.get("children").and_then(Value::as_array);
-        nodes.extend(children.into_iter().flatten());
+        nodes.extend(list(node, "children"));
         let Some(levels) = node.get("lods").and_then(Value::as_object) else {
             continue;
         };
@@ -45,7 +41,7 @@ pub(in super::super) fn read(
     let mut whole = FormatOutput::default();
     let mut read = HashSet::new();
     for (file, mut ranges) in pieces {
-        let mut piece = load(&names[file], folder, &mut read)?;
+        let mut piece = load(&names[file], files, &mut read)?;
         ranges.sort_unstable();
         let count = piece.elements;
         let next = ranges.iter().try_fold(0, |next, &[first, end]| {
@@ -59,46 +55,49 @@ pub(in super::super) fn read(
         let all = ranges.iter().map(|[first, end]| end - first).sum::<u64>() == count;
         if !all {
             let mut open = ranges.iter().peekable();
-            let part_of = piece.numbers().map(|element| {
+            let mut is_asked = |element: u64| {
                 while open.next_if(|[_, end]| *end <= element).is_some() {}
-                u32::from(open.peek().is_none_or(|[first, _]| *first > element))
-            });
-            let part_of: Vec<u32> = part_of.collect();
-            let numbered = piece.numbers().zip(&part_of);
-            let left_out: Vec<u64> = numbered
-                .filter(|(_, part)| **part == 1)
-                .map(|(element, _)| element)
-                .collect();
+                open.peek().is_some_and(|[first, _]| *first <= element)
+            };
+            let numbered = (0_u32..).zip(piece.numbers());
+            let (kept, left_out): (Vec<_>, Vec<_>) =
+                numbered.partition(|(_, element)| is_asked(*element));
+            let kept: Vec<u32> = kept.into_iter().map(|(number, _)| number).collect();
+            piece.gaussians.keep(&kept);
+            let left_out = left_out.into_iter().map(|(_, element)| element);
             piece.dropped.extend(left_out);
             piece.dropped.sort_unstable();
-            let parts = std::mem::take(&mut piece.gaussians).into_parts(&part_of, 2)?;
-            piece.gaussians = parts.into_iter().next().unwrap_or_default().gaussians;
         }
         whole.append(piece)?;
     }
     if let Some(surroundings) = document.get("environment").filter(|name| !name.is_null()) {
-        whole.append(load(surroundings, folder, &mut read)?)?;
+        whole.append(load(surroundings, files, &mut read)?)?;
     }
     Ok(whole)
 }
 
-/// A folder of SOG, by the name of its `meta.json`, which may not have been read before.
+/// A scene of SOG by the name of its `meta.json` or of its archive, which may not have been read before.
 fn load(
     name: &Value,
-    folder: Option<&Path>,
+    files: Files<'_>,
     read: &mut HashSet<PathBuf>,
 ) -> Result<FormatOutput, Failure> {
     let name = name.as_str().ok_or_else(|| {
         "a file name in lod-meta.json is no text; export the scene again".to_owned()
     })?;
+    let path = files.path(name)?;
     // Its parts, since there are many ways to write one path.
-    if !read.insert(Path::new(name).components().collect()) {
+    if !read.insert(path.components().collect()) {
         return Err(Failure::Format(format!(
             "lod-meta.json names the file \"{}\" twice; export the scene again",
             rara_base::error::shortened(name)
         )));
     }
-    let document = json(&beside(name, folder)?)?;
-    let own = folder.and_then(|folder| Some(folder.join(name).parent()?.to_owned()));
-    super::read_folder(&document, own.as_deref())
+    let bytes = files.get(name)?;
+    if Archive::is(&bytes) {
+        let archive = Archive::open(&bytes)?;
+        let (document, pictures) = archive.document("meta.json")?;
+        return super::read(&document, pictures);
+    }
+    super::read(&json(&bytes)?, files.at(&path))
 }

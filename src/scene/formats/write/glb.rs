@@ -155,16 +155,18 @@ impl Parts {
         let own = |name: &str| format!("{EXTENSION}:{name}");
         let centres = &gaussians.positions()[range.clone()];
         let [low, high] = corners(centres);
-        let mut numbers = centres.iter().flat_map(|p| p.to_array());
+        let mut numbers = centres.iter().flat_map(|centre| centre.to_array());
         add("POSITION".into(), "VEC3", &mut numbers);
-        let rotations = &gaussians.rotations()[range.clone()];
-        let mut numbers = rotations.iter().flat_map(|q| q.to_array());
-        add(own("ROTATION"), "VEC4", &mut numbers);
-        let scales = &gaussians.scales()[range.clone()];
-        let mut numbers = scales.iter().flat_map(|scale| scale.to_array());
-        add(own("SCALE"), "VEC3", &mut numbers);
-        let opacities = &gaussians.opacities()[range.clone()];
-        add(own("OPACITY"), "SCALAR", &mut opacities.iter().copied());
+        let rotations = gaussians.rotations()[range.clone()].iter();
+        add(
+            own("ROTATION"),
+            "VEC4",
+            &mut rotations.flat_map(|q| q.to_array()),
+        );
+        let scales = gaussians.scales()[range.clone()].iter();
+        add(own("SCALE"), "VEC3", &mut scales.flat_map(|s| s.to_array()));
+        let opacities = gaussians.opacities()[range.clone()].iter();
+        add(own("OPACITY"), "SCALAR", &mut opacities.copied());
         let mut number = 0;
         for band in 0..=gaussians.sh_degree() {
             for coefficient in 0..=2 * band {

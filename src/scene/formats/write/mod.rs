@@ -119,21 +119,14 @@ fn byte(share: f64) -> u8 {
 
 /// The place of a unit quaternion's largest part among `parts`, and the others with the sign that makes it positive.
 fn smallest_three(parts: [f32; 4]) -> (u32, [f64; 3]) {
-    let mut largest = 0;
-    for (place, part) in parts.iter().enumerate() {
-        if part.abs() > parts[largest].abs() {
-            largest = place;
-        }
-    }
+    let is_larger = |a: &usize, b: &usize| parts[*a].abs().total_cmp(&parts[*b].abs());
+    // The first of several.
+    let largest = (0..4).rev().max_by(is_larger).unwrap_or_default();
     let sign = if parts[largest] < 0.0 { -1.0 } else { 1.0 };
-    let mut others = parts
-        .iter()
-        .enumerate()
-        .filter(|(place, _)| *place != largest);
+    let mut others = (0..4).filter(|place| *place != largest);
     let others = [(); 3].map(|()| {
-        others
-            .next()
-            .map_or(0.0, |(_, part)| sign * f64::from(*part))
+        let place = others.next().unwrap_or_default();
+        sign * f64::from(parts[place])
     });
     (largest as u32, others)
 }

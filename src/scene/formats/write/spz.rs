@@ -4,7 +4,7 @@ use std::io::Write;
 
 use flate2::Compression;
 use flate2::write::GzEncoder;
-use ruzstd::encoding::{CompressionLevel, compress_to_vec};
+use structured_zstd::encoding::{CompressionLevel, compress_slice_to_vec};
 
 use super::super::super::Gaussians;
 use super::super::spz::{ANTIALIASED, COLOUR, HEADER_4, MAGIC, RIGHT_UP_BACK, signs};
@@ -13,6 +13,9 @@ use rara_base::error::{Error, Result};
 
 /// The most bits behind the point of a position that are used.
 const MOST_BITS: u32 = 16;
+
+/// The level of zstd by which files of version 4 are smaller than by the gzip of version 3, in less time.
+const LEVEL: i32 = 9;
 
 /// With half a step more at each end.
 pub(super) const RANGES: Ranges = Ranges {
@@ -56,7 +59,7 @@ pub(super) fn encode(gaussians: &Gaussians, version: u32) -> Result<Vec<u8>> {
             file.extend((HEADER_4 as u32).to_le_bytes());
             file.resize(HEADER_4 as usize, 0);
             let streams = runs.iter().map(|run| {
-                let stream = compress_to_vec(&run[..], CompressionLevel::Fastest);
+                let stream = compress_slice_to_vec(run, CompressionLevel::from_level(LEVEL));
                 (stream, run.len())
             });
             let streams: Vec<_> = streams.collect();

@@ -12,7 +12,7 @@ use rara::{Gaussians, Placement};
 
 use super::load_bytes;
 use super::variants::{base64, webp};
-use crate::folder::Folder;
+use crate::common::folder::Folder;
 use stored::{Stored, assert_shown, coefficients, plain};
 
 /// glTF's axes are left, up and forward, and ours are right, down and forward.
@@ -56,7 +56,7 @@ fn ply_has_a_channel_after_the_other() {
 
 #[test]
 fn compressed_ply_has_a_channel_after_the_other() {
-    for degree in 1..=3 {
+    for degree in 1..=4 {
         let bytes = Stored {
             degree,
             low: 128_u8,

@@ -1,0 +1,186 @@
+//! Values that command lines, job files and other languages write as text: choices by their names, numbers, colours.
+
+use crate::error::shortened;
+
+/// A value that has a text.
+pub trait Value: Sized + 'static {
+    /// The names of all values, each with its documentation, if the values are choices among a few.
+    const CHOICES: &'static [(&'static str, &'static str)] = &[];
+
+    /// Returns the value of a text, or a sentence that says what was expected.
+    fn read(text: &str) -> Result<Self, String>;
+
+    /// Returns the text that `read` reads, without loss; `None` for a value that stands for "not given".
+    fn text(&self) -> Option<String>;
+}
+
+/// Defines an enumeration whose values have names. It gets `ALL`, which lists the named values in their order, `name`,
+/// `Display` and `FromStr`. A value without a name is for programs alone.
+#[macro_export]
+macro_rules! named {
+    (
+        $(#[$about:meta])*
+        pub enum $of:ident {
+            $($(#[doc = $doc:literal])+ $(#[default$($default:tt)*])? $value:ident $(= $name:literal)?,)+
+        }
+    ) => {
+        $(#[$about])*
+        pub enum $of {
+            $($(#[doc = $doc])+ $(#[default$($default)*])? $value,)+
+        }
+
+        impl $of {
+            /// All values that have a name, in their order.
+            pub const ALL: &'static [Self] = &[$($({ let _ = $name; Self::$value },)?)+];
+
+            /// Returns the value's name, which `parse` reads.
+            pub const fn name(self) -> &'static str {
+                match self {
+                    $(Self::$value => concat!($($name)?),)+
+                }
+            }
+        }
+
+        impl $crate::value::Value for $of {
+            const CHOICES: &'static [(&'static str, &'static str)] =
+                &[$((concat!($($name)?), concat!($($doc, "\n"),+)),)+].split_at(Self::ALL.len()).0;
+
+            fn read(text: &str) -> std::result::Result<Self, String> {
+                let found = Self::ALL.iter().find(|value| value.name() == text);
+                found.copied().ok_or_else(|| $crate::value::unknown(text, Self::CHOICES))
+            }
+
+            fn text(&self) -> Option<String> {
+                Some(self.name().into())
+            }
+        }
+
+        impl std::fmt::Display for $of {
+            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.pad(self.name())
+            }
+        }
+
+        impl std::str::FromStr for $of {
+            type Err = $crate::error::Error;
+
+            fn from_str(name: &str) -> $crate::error::Result<Self> {
+                $crate::value::Value::read(name).map_err($crate::error::Error::Invalid)
+            }
+        }
+    };
+}
+
+/// The sentence about a name that none of the choices has.
+#[doc(hidden)]
+pub fn unknown(name: &str, choices: &[(&str, &str)]) -> String {
+    let names: Vec<_> = choices.iter().map(|(name, _)| *name).collect();
+    format!(
+        "there is no '{}'; give one of {}",
+        shortened(name),
+        names.join(", ")
+    )
+}
+
+/// Values whose text is that of the standard library.
+macro_rules! plain {
+    ($($of:ty, $expected:literal;)+) => {
+        $(impl Value for $of {
+            fn read(text: &str) -> std::result::Result<Self, String> {
+                text.parse().map_err(|_| concat!("expected ", $expected).into())
+            }
+
+            fn text(&self) -> Option<String> {
+                Some(self.to_string())
+            }
+        })+
+    };
+}
+
+plain! {
+    f32, "a number";
+    u32, "a whole number";
+    bool, "true or false";
+}
+
+impl<T: Value> Value for Option<T> {
+    const CHOICES: &'static [(&'static str, &'static str)] = T::CHOICES;
+
+    fn read(text: &str) -> std::result::Result<Self, String> {
+        T::read(text).map(Some)
+    }
+
+    fn text(&self) -> Option<String> {
+        self.as_ref().and_then(T::text)
+    }
+}
+
+/// The names of colours.
+const COLOURS: [(&str, [f32; 3]); 7] = [
+    ("black", [0.0, 0.0, 0.0]),
+    ("white", [1.0, 1.0, 1.0]),
+    ("grey", [0.5, 0.5, 0.5]),
+    ("gray", [0.5, 0.5, 0.5]),
+    ("red", [1.0, 0.0, 0.0]),
+    ("green", [0.0, 1.0, 0.0]),
+    ("blue", [0.0, 0.0, 1.0]),
+];
+
+/// A colour: `r,g,b`, each 0 to 1, `#rgb`, `#rrggbb` or one of a few names.
+impl Value for [f32; 3] {
+    fn read(text: &str) -> std::result::Result<Self, String> {
+        if let Some(digits) = text.strip_prefix('#') {
+            return hexadecimal(digits)
+                .ok_or_else(|| "expected three or six hexadecimal digits, as in #fff".into());
+        }
+        if let Some((_, rgb)) = COLOURS.iter().find(|(name, _)| *name == text) {
+            return Ok(*rgb);
+        }
+        let rgb: Option<Vec<f32>> = text.split(',').map(|n| n.trim().parse().ok()).collect();
+        let rgb: [f32; 3] = rgb.and_then(|rgb| rgb.try_into().ok()).ok_or_else(|| {
+            format!(
+                "expected 3 numbers with commas between them, #rrggbb, or one of {}",
+                COLOURS.map(|(name, _)| name).join(", ")
+            )
+        })?;
+        match rgb.iter().all(|c| (0.0..=1.0).contains(c)) {
+            true => Ok(rgb),
+            false => Err("red, green and blue are each between 0 and 1".into()),
+        }
+    }
+
+    fn text(&self) -> Option<String> {
+        let [r, g, b] = self;
+        Some(format!("{r},{g},{b}"))
+    }
+}
+
+fn hexadecimal(digits: &str) -> Option<[f32; 3]> {
+    let values = digits.chars().map(|digit| digit.to_digit(16));
+    let values: Vec<u32> = values.collect::<Option<_>>()?;
+    let of = |value: u32| value as f32 / 255.0;
+    match *values.as_slice() {
+        [r, g, b] => Some([r, g, b].map(|v| of(17 * v))),
+        [r1, r0, g1, g0, b1, b0] => {
+            Some([(r1, r0), (g1, g0), (b1, b0)].map(|(h, l)| of(16 * h + l)))
+        }
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn colours() {
+        let read = <[f32; 3]>::read;
+        assert_eq!(read("white"), Ok([1.0; 3]));
+        assert_eq!(read("#fff"), Ok([1.0; 3]));
+        assert_eq!(read("#ff0080"), Ok([1.0, 0.0, 128.0 / 255.0]));
+        assert_eq!(read("0, 0.5,1"), Ok([0.0, 0.5, 1.0]));
+        for wrong in ["#ffff", "#ggg", "wite", "0,0,1.5", "0,0", "nan,0,0", ""] {
+            assert!(read(wrong).is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,90 @@
+//! Tests of the help of `rara`.
+
+use std::collections::HashMap;
+
+use super::*;
+use crate::program::all;
+
+fn parts() -> Vec<Command> {
+    let mut command = all::<crate::Command>();
+    command.build();
+    command.get_subcommands().cloned().collect()
+}
+
+fn help(part: &Command) -> String {
+    part.clone().render_help().to_string()
+}
+
+#[test]
+fn the_help_of_a_command_is_short_and_begins_with_its_output() {
+    for part in parts() {
+        let (name, text) = (part.get_name(), help(&part));
+        let lines = text.lines().count();
+        assert!(lines <= 150, "{name}: {lines} lines");
+        let options = text.split_once("Options:\n").map(|(_, rest)| rest);
+        let first = options.and_then(|rest| rest.lines().next()).unwrap_or("");
+        let writes = part.get_arguments().any(|arg| arg.get_id() == "output");
+        assert!(!writes || first.contains("--output"), "{name}: {first}");
+    }
+}
+
+#[test]
+fn texts_are_for_readers_of_a_terminal() {
+    let mut long: Vec<String> = Vec::new();
+    for part in parts() {
+        for arg in part.get_arguments() {
+            let name = format!("{} {}", part.get_name(), arg.get_id());
+            let summary = arg.get_help().map(ToString::to_string).unwrap_or_default();
+            if summary.len() > 90 || summary.is_empty() || summary.ends_with('.') {
+                long.push(format!("{name}: {summary}"));
+            }
+            let values = arg.get_possible_values().into_iter();
+            let values = values.filter_map(|value| value.get_help().map(ToString::to_string));
+            let details = arg.get_long_help().map(ToString::to_string);
+            for text in values.chain(details).chain([summary]) {
+                let is_for_rustdoc = text.contains("](") || text.contains("[`");
+                assert!(!is_for_rustdoc, "{name}: {text}");
+            }
+        }
+    }
+    assert!(long.is_empty(), "no summaries: {long:#?}");
+}
+
+#[test]
+fn paragraphs_are_wrapped_once() {
+    for part in parts() {
+        let text = help(&part);
+        let lines: Vec<&str> = text.lines().collect();
+        for pair in lines.windows(2) {
+            let is_prose =
+                |line: &str| line.starts_with(char::is_alphanumeric) && !line.ends_with(':');
+            if !is_prose(pair[0]) || !is_prose(pair[1]) {
+                continue;
+            }
+            let word = pair[1].split(' ').next().unwrap_or_default();
+            let would_fit = pair[0].len() + 1 + word.len() <= 100;
+            assert!(!would_fit, "{}: {pair:?}", part.get_name());
+        }
+    }
+}
+
+#[test]
+fn a_topic_is_one_heading() {
+    let mut headings: HashMap<String, String> = HashMap::new();
+    for heading in parts().iter().flat_map(topics) {
+        let known = headings.entry(topic(&heading)).or_insert(heading.clone());
+        assert_eq!(*known, heading);
+    }
+    let commands: Vec<String> = parts().iter().map(|part| part.get_name().into()).collect();
+    assert!(headings.keys().all(|topic| !commands.contains(topic)));
+    assert!(headings.len() >= 8, "{headings:?}");
+}
+
+#[test]
+fn paragraphs_are_joined_and_lists_are_not() {
+    let text = "Examples:\n  a\n  b\n\nOne\ntwo.\n\nThree:\n  c";
+    assert_eq!(
+        unwrapped(text),
+        "Examples:\n  a\n  b\n\nOne two.\n\nThree:\n  c"
+    );
+}

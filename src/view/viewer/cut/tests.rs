@@ -1,0 +1,72 @@
+use super::*;
+
+const CENTRE: DVec3 = DVec3::new(1.0, 2.0, 3.0);
+
+fn cut(typed: &[&str]) -> ClipEditor {
+    let typed = typed.iter().map(|text| text.parse().unwrap());
+    ClipEditor::new(typed.collect(), ClipOp::And, CENTRE)
+}
+
+#[test]
+fn without_a_clip_nothing_is_cut_until_a_shape_is_set() {
+    let mut cut = cut(&[]);
+    assert_eq!(cut.clip(), Clip::default());
+    cut.set("sphere:0,0,0,1".parse().unwrap());
+    assert_eq!(
+        cut.clip(),
+        "sphere:0,0,0,1".parse::<Shape>().unwrap().clip()
+    );
+    cut.on = false;
+    assert!(cut.clip().is_everything() && cut.expressions().is_empty());
+}
+
+#[test]
+fn shapes_are_held_in_turn_wherever_they_stand() {
+    let mut cut = cut(&[
+        "all(sphere:0,0,0,1, not(any(box:0,0,0,1,1,1, !plane:1,0,0,2)))",
+        "plane:0,1,0,0",
+    ]);
+    let mut held = Vec::new();
+    for _ in 0..4 {
+        held.push(cut.words());
+        cut.flip();
+        cut.next();
+    }
+    assert_eq!(
+        held,
+        [
+            "plane 1 of 4 at 0.0000",
+            "sphere 2 of 4",
+            "box 3 of 4",
+            "plane 4 of 4 at 2.0000"
+        ]
+    );
+    let text: Vec<String> = cut.expressions().iter().map(ToString::to_string).collect();
+    assert_eq!(
+        text,
+        [
+            "plane:-0,-1,-0,-0",
+            "all(!sphere:0,0,0,1, not(any(!box:0,0,0,1,1,1, plane:1,0,0,2)))"
+        ]
+    );
+    assert_eq!(cut.held(), 0);
+}
+
+#[test]
+fn the_outside_of_a_plane_is_flipped_at_once() {
+    let mut cut = cut(&[]);
+    cut.set("!plane:1,0,0,0".parse().unwrap());
+    assert_eq!(cut.shape(), "plane:-1,0,0,0".parse::<Shape>().unwrap());
+    assert_eq!(cut.words(), "plane at 0.0000");
+    cut.flip();
+    assert_eq!(cut.shape(), "plane:1,0,0,0".parse::<Shape>().unwrap());
+}
+
+#[test]
+fn a_shape_that_would_overflow_stays_where_it_was() {
+    let mut cut = cut(&["box:1e300,0,0,1,1,1"]);
+    let huge = Placement::new(DVec3::ZERO, glam::DQuat::IDENTITY, 1e300).unwrap();
+    let before = cut.clip();
+    cut.place(&huge);
+    assert_eq!(cut.clip(), before);
+}

@@ -1,0 +1,143 @@
+//! The frames of an open window, and what is said over them and in the title.
+
+use std::time::{Duration, Instant};
+
+use super::failure::Failure;
+use super::loading::Loading;
+use super::outlines;
+use super::overlay::OverlayScene;
+use super::scenery::{Manner, Scenery};
+use super::stage::Viewer;
+use super::text::ProgressBar;
+use super::title;
+use crate::Redraw;
+
+/// The title changes no more often than this, since each change costs the window system a message.
+const TITLE_PAUSE: Duration = Duration::from_millis(200);
+/// The most times between frames that are kept.
+const INTERVALS: usize = 10_000;
+
+impl Viewer {
+    pub(super) fn draw(&mut self) -> Result<(), Failure> {
+        let Some(size) = self.windowed.fit(self.size())? else {
+            // An event will report the next size.
+            (self.dirty, self.unsettled) = (false, false);
+            return Ok(());
+        };
+        self.lay_over(size);
+        if !self.loaded {
+            let background = self.manner.settings.background.unwrap_or_default();
+            let redraw = self.windowed.show_panels(background)?;
+            (self.dirty, self.unsettled) = (redraw == Redraw::Now, false);
+            return Ok(());
+        }
+        let camera = self.viewpoint.camera(size);
+        let Scenery {
+            clips,
+            centre,
+            radius,
+            ..
+        } = &mut self.scenery;
+        let Manner {
+            outlined, settings, ..
+        } = &self.manner;
+        clips.apply(&mut self.windowed)?;
+        self.windowed.set_lines(match outlined {
+            true => outlines::lines(clips, &camera, (*centre, *radius)),
+            false => Vec::new(),
+        });
+        let clip = clips.frame.clip();
+        let is_said = std::mem::replace(&mut self.compiling, false);
+        if !is_said && self.windowed.compiles(&camera, &clip, settings)? {
+            self.compiling = true;
+            self.shown_at = None; // the next frame does not follow at once
+            return self.say_that_shaders_compile(size);
+        }
+        let frame = (camera, clip, *settings);
+        let redraw = self.windowed.show(&frame.0, &frame.1, &frame.2)?;
+        self.last = Some(frame);
+        self.dirty = redraw == Redraw::Now || is_said;
+        self.unsettled = redraw == Redraw::WhenIdle;
+        let now = Instant::now();
+        // A frame that only asks for numbers does not count, since nobody waits for it.
+        if let Some(before) = self.shown_at.take().filter(|_| self.unsettled)
+            && self.intervals.len() < INTERVALS
+        {
+            self.intervals.push(now - before);
+        }
+        if self.unsettled {
+            self.shown_at = Some(now);
+        }
+        if redraw == Redraw::NotNeeded {
+            self.overlay.scene_is_seen();
+        }
+        // The numbers that are known now may be others than those over the picture.
+        self.dirty |= redraw == Redraw::NotNeeded && self.overlay.is_old(&self.seen(size));
+        if redraw == Redraw::NotNeeded || self.titled_at.is_none_or(|at| now - at >= TITLE_PAUSE) {
+            self.titled_at = Some(now);
+            self.entitle();
+        }
+        Ok(())
+    }
+
+    /// Shows the last frame once more, or nothing before the first, and over it that the next one has to compile shaders.
+    fn say_that_shaders_compile(&mut self, size: (u32, u32)) -> Result<(), Failure> {
+        self.lay_over(size);
+        // A window without panels has its title.
+        self.window.set_title("rara: compiling shaders");
+        self.titled_at = None;
+        // The size may have changed since, and with it what would have to be compiled.
+        let last = self
+            .last
+            .as_ref()
+            .filter(|last| (last.0.width, last.0.height) == size);
+        match last {
+            Some((camera, clip, settings))
+                if !self.windowed.compiles(camera, clip, settings)? =>
+            {
+                self.windowed.show(camera, clip, settings)?;
+            }
+            _ => {
+                let background = self.manner.settings.background.unwrap_or_default();
+                self.windowed.show_panels(background)?;
+            }
+        }
+        self.dirty = true;
+        Ok(())
+    }
+
+    /// Lays over the picture what there is to say.
+    fn lay_over(&mut self, size: (u32, u32)) {
+        if let Some(panels) = self.overlay.panels(self.overlay.content(&self.seen(size))) {
+            self.windowed.set_panels(&panels);
+        }
+    }
+
+    /// What there is to say of the picture.
+    fn seen(&self, size: (u32, u32)) -> OverlayScene<'_> {
+        OverlayScene {
+            clips: self.loaded.then_some(&self.scenery.clips),
+            mode: self.manner.settings.mode,
+            stats: self.windowed.stats(),
+            progress: match self.compiling {
+                true => Some(("compiling shaders".into(), ProgressBar::Moving(0.5))),
+                false => self.loading.as_ref().map(Loading::progress),
+            },
+            size,
+            scale_factor: self.scale_factor,
+        }
+    }
+
+    /// True when there is something else to say than what is written over the picture.
+    pub(super) fn is_behind(&self) -> bool {
+        self.overlay.is_old(&self.seen(self.size))
+    }
+
+    fn entitle(&self) {
+        let Scenery { name, clips, .. } = &self.scenery;
+        let mode = self.manner.settings.mode;
+        let stats = self.windowed.stats();
+        let text = title::title(name, mode.name(), clips.words().as_deref(), stats);
+        self.window.set_title(&text);
+    }
+}

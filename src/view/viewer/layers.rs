@@ -1,0 +1,278 @@
+//! The layers of the scene, their clips, and the clip that is edited: the frame's, or a layer's own.
+
+use glam::DVec3;
+use rara::{Camera, ClipOp};
+
+use super::action::{Edit, GripAction, Which};
+use super::cut::ClipEditor;
+use super::failure::Failure;
+use crate::Windowed;
+use rara::clip::Expression;
+use rara::scene::layers::{LayerClip, ListedState, LoadedLayer};
+
+/// The frame's clip and the layers.
+#[derive(Debug, Clone)]
+pub struct Clips {
+    /// The clip of the frame, for all layers that have none of their own.
+    pub frame: ClipEditor,
+    /// The layers by name: those of one name that begin alike go together, as flags name them.
+    layers: Vec<NamedLayer>,
+    /// The number of the layer whose own clip is edited; `None` for the frame's.
+    edited: Option<usize>,
+    centre: DVec3,
+    /// True when the window's scene is not yet as these say.
+    changed: bool,
+}
+
+/// The layers of a name that begin alike.
+#[derive(Debug, Clone)]
+pub struct NamedLayer {
+    /// Their name.
+    pub name: String,
+    /// Their numbers in the scene.
+    places: Vec<usize>,
+    /// True when they are shown.
+    pub visible: bool,
+    /// Their own clip; one that is off leaves them whole. `None` where the frame's holds.
+    own: Option<ClipEditor>,
+    /// What is listed of each of them, with clips as they can be edited.
+    pub listed: Vec<ListedState>,
+}
+
+impl NamedLayer {
+    /// Their own clip where a section cuts as well, as flags say it.
+    pub fn clip(&self, section: &[Expression]) -> Option<LayerClip> {
+        Some(layer_clip(self.own.as_ref()?).cut_by(section))
+    }
+}
+
+impl Clips {
+    /// The frame's clip and the layers of a scene of this middle, as they were read.
+    pub fn new(frame: ClipEditor, loaded: &[LoadedLayer], centre: DVec3) -> Self {
+        let mut layers: Vec<NamedLayer> = Vec::new();
+        for (place, layer) in loaded.iter().enumerate() {
+            let is_alike = |other: &&mut NamedLayer| {
+                let first = &loaded[other.places[0]];
+                let facts = |l: &LoadedLayer| (l.name.clone(), l.state.visible, l.clip.clone());
+                facts(first) == facts(layer)
+            };
+            let listed = ListedState {
+                visible: layer.listed.visible,
+                clip: layer
+                    .listed
+                    .clip
+                    .as_ref()
+                    .map(|clip| layer_clip(&own(clip, centre))),
+            };
+            match layers.iter_mut().find(is_alike) {
+                Some(other) => {
+                    other.places.push(place);
+                    other.listed.push(listed);
+                }
+                None => layers.push(NamedLayer {
+                    name: layer.name.clone(),
+                    places: vec![place],
+                    visible: layer.state.visible,
+                    own: layer.clip.as_ref().map(|clip| own(clip, centre)),
+                    listed: vec![listed],
+                }),
+            }
+        }
+        let changed = frame.has_section();
+        Self {
+            frame,
+            layers,
+            edited: None,
+            centre,
+            changed,
+        }
+    }
+
+    /// The layers by name.
+    pub fn layers(&self) -> &[NamedLayer] {
+        &self.layers
+    }
+
+    /// The clip that is edited, if it is there: a layer may have none of its own.
+    pub(super) fn edited(&self) -> Option<&ClipEditor> {
+        match self.edited {
+            None => Some(&self.frame),
+            Some(layer) => self.layers[layer].own.as_ref(),
+        }
+    }
+
+    /// Every clip that cuts something of what is shown.
+    pub(super) fn in_force(&self) -> impl Iterator<Item = &ClipEditor> {
+        let shown = || self.layers.iter().filter(|layer| layer.visible);
+        let is_cut = |own: &ClipEditor| own.on && !self.frame.section().is_empty();
+        let frame = shown()
+            .any(|layer| layer.own.as_ref().is_none_or(is_cut))
+            .then_some(&self.frame);
+        let own = shown().filter_map(|layer| layer.own.as_ref());
+        frame.into_iter().chain(own).filter(|cut| cut.on)
+    }
+
+    /// Puts these expressions in place of the clip that is edited.
+    pub(super) fn replace(&mut self, clip: Vec<Expression>) {
+        self.changed = true;
+        match self.edited {
+            None => self.frame = ClipEditor::new(clip, self.frame.op(), self.centre),
+            Some(layer) => {
+                self.layers[layer].own = Some(ClipEditor::new(clip, ClipOp::And, self.centre));
+            }
+        }
+    }
+
+    /// Gives the layers of a name a clip of their own; says whether there are any.
+    pub(super) fn replace_of(&mut self, name: &str, clip: &LayerClip) -> bool {
+        let centre = self.centre;
+        let mut is_there = false;
+        for layer in self.layers.iter_mut().filter(|layer| layer.name == name) {
+            layer.own = Some(own(clip, centre));
+            (is_there, self.changed) = (true, true);
+        }
+        is_there
+    }
+
+    /// Does what is asked of the held shape. What changes the clip of a layer without one gives it one, whose only shape is a
+    /// plane through the middle of the scene.
+    pub fn act(&mut self, action: GripAction, camera: &Camera, radius: f64) {
+        let cut = match self.edited {
+            None => {
+                self.changed |= self.frame.has_section();
+                &mut self.frame
+            }
+            Some(layer) => {
+                let own = &mut self.layers[layer].own;
+                if own.is_none() && action == GripAction::Next {
+                    return;
+                }
+                self.changed = true;
+                own.get_or_insert_with(|| whole(self.centre))
+            }
+        };
+        cut.act(action, camera, radius);
+    }
+
+    /// Shows layers, hides them, or whichever they are not.
+    ///
+    /// # Errors
+    /// [`Failure::Asked`] where there are no such layers.
+    pub fn show(&mut self, which: &Which, visible: Option<bool>) -> Result<(), Failure> {
+        let layer = self.find(which)?;
+        let layer = &mut self.layers[layer];
+        layer.visible = visible.unwrap_or(!layer.visible);
+        self.changed = true;
+        Ok(())
+    }
+
+    /// Chooses the clip that is edited.
+    ///
+    /// # Errors
+    /// [`Failure::Asked`] where there are no such layers.
+    pub fn edit(&mut self, edit: &Edit) -> Result<(), Failure> {
+        match (edit, self.edited) {
+            (Edit::Frame, _) => self.edited = None,
+            (Edit::Layer(which), _) => self.edited = Some(self.find(which)?),
+            // After the last layer comes the frame again.
+            (Edit::Next, None) => self.edited = Some(0).filter(|_| !self.layers.is_empty()),
+            (Edit::Next, Some(layer)) => {
+                self.edited = Some(layer + 1).filter(|&next| next < self.layers.len());
+            }
+            (Edit::Release, Some(layer)) => {
+                self.layers[layer].own = None;
+                self.changed = true;
+            }
+            (Edit::Release, None) => {}
+        }
+        Ok(())
+    }
+
+    /// Makes the window's scene what is wanted of its layers.
+    pub(super) fn apply(&mut self, windowed: &mut Windowed) -> rara::Result<()> {
+        if !std::mem::take(&mut self.changed) {
+            return Ok(());
+        }
+        for layer in &self.layers {
+            let clip = layer.clip(self.frame.section()).map(|clip| clip.clip());
+            for &place in &layer.places {
+                let state = windowed.layers()[place].state();
+                windowed.set_layer_state(place, state.visible(layer.visible))?;
+                windowed.set_layer_clip(place, clip.clone())?;
+            }
+        }
+        Ok(())
+    }
+
+    /// A few words for the title: which shape of which clip is held, and which layers are hidden.
+    pub(super) fn words(&self) -> Option<String> {
+        let held = self.edited().filter(|cut| cut.on).map(ClipEditor::words);
+        let mut words = Vec::new();
+        match self.edited {
+            None => words.extend(held),
+            Some(layer) => {
+                let layer = &self.layers[layer];
+                let clip = match (&layer.own, held) {
+                    (_, Some(held)) => held,
+                    (Some(_), None) => "whole".into(),
+                    (None, None) => "as the frame".into(),
+                };
+                words.push(format!("clip of {}: {clip}", layer.name));
+            }
+        }
+        let hidden = self.layers.iter().filter(|layer| !layer.visible);
+        let hidden: Vec<&str> = hidden.map(|layer| &layer.name[..]).collect();
+        if !hidden.is_empty() {
+            words.push(format!("without {}", hidden.join(" and ")));
+        }
+        (!words.is_empty()).then(|| words.join(", "))
+    }
+
+    /// The number, from 0, of the layers that are meant.
+    fn find(&self, which: &Which) -> Result<usize, Failure> {
+        let numbered = |number: usize| number.checked_sub(1);
+        let found = match which {
+            Which::Number(number) => numbered(*number),
+            Which::Typed(text) => {
+                let named = self.layers.iter().position(|layer| layer.name == *text);
+                named.or_else(|| numbered(text.parse().ok()?))
+            }
+        };
+        let found = found.filter(|&at| at < self.layers.len());
+        found.ok_or_else(|| {
+            let names = self.layers.iter().enumerate();
+            let names: Vec<_> = names
+                .map(|(at, l)| format!("{} {}", at + 1, l.name))
+                .collect();
+            Failure::Asked(format!(
+                "there is no layer {which}; there are {}",
+                names.join(", ")
+            ))
+        })
+    }
+}
+
+/// A layer's own clip as it can be edited.
+fn own(clip: &LayerClip, centre: DVec3) -> ClipEditor {
+    match clip {
+        LayerClip::Whole => whole(centre),
+        LayerClip::Region(region) => ClipEditor::new(vec![region.clone()], ClipOp::And, centre),
+    }
+}
+
+/// What a layer's own clip is as it has been edited.
+fn layer_clip(own: &ClipEditor) -> LayerClip {
+    match own.expressions() {
+        [] => LayerClip::Whole,
+        [only] => LayerClip::Region(only.clone()),
+        all => LayerClip::Region(Expression::All(all.into())),
+    }
+}
+
+/// A clip that is off.
+fn whole(centre: DVec3) -> ClipEditor {
+    ClipEditor::new(Vec::new(), ClipOp::And, centre)
+}
+
+#[cfg(test)]
+pub(super) mod tests;

@@ -1,0 +1,12 @@
+//! rara in a host: the Vulkan layer, devices that are lent, targets, depth and viewports, frames in flight.
+
+mod classic_host;
+mod depth;
+mod dynamic_state;
+mod embed;
+mod features;
+mod formats;
+mod gpu;
+mod streaming;
+mod views;
+mod wgpu_host;

@@ -49,12 +49,11 @@ impl<P: Owner> Buffers<P> {
         buffer.expect("every owner has its empty buffer")
     }
 
-    /// The buffers that may be used again in these sizes, and where a plan wants them. `fits` is given their bytes and those
-    /// that are needed.
-    pub(crate) fn spare(&self, plan: &P, sizes: &Sizes<P>, fits: fn(u64, u64) -> bool) -> Spare {
-        let spare = |(buffer, (storage, size)): (&Option<Buffer>, (&Storage<P>, u64))| {
-            let location = (storage.location)(plan);
-            let serves = |b: &&Buffer| b.location() == location && fits(b.size(), rounded(size));
+    /// The buffers that may be used again in these sizes, wherever they are: another plan than the one that they were made for
+    /// works with them too, and their contents may be needed. `fits` is given their bytes and those that are needed.
+    pub(crate) fn spare(&self, sizes: &Sizes<P>, fits: fn(u64, u64) -> bool) -> Spare {
+        let spare = |(buffer, (_, size)): (&Option<Buffer>, (&Storage<P>, u64))| {
+            let serves = |buffer: &&Buffer| fits(buffer.size(), rounded(size));
             buffer.as_ref().filter(|_| size > 0).filter(serves).cloned()
         };
         Spare(self.buffers.iter().zip(sizes.all()).map(spare).collect())

@@ -224,12 +224,12 @@ impl Renderer {
         of_eye: Option<Sizes<EyePlan>>,
         frames: (u64, u64),
     ) -> Result<()> {
-        let cut = of_cut.as_ref().map_or([0; 2], |sizes| {
-            self.cut.memory.change(&plan.cut, sizes, frames)
-        });
+        let cut = of_cut
+            .as_ref()
+            .map_or([0; 2], |sizes| self.cut.memory.change(sizes, frames));
         let eye = of_eye
             .as_ref()
-            .map_or([0; 2], |sizes| self.memory.change(plan, sizes, frames));
+            .map_or([0; 2], |sizes| self.memory.change(sizes, frames));
         let [missing, goes] = [0, 1].map(|at| cut[at] + eye[at]);
         self.device
             .check_budget("a frame's working memory", missing, goes)?;

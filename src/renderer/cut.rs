@@ -147,7 +147,7 @@ impl Cut {
         memory.free_finished(finished);
         if !memory.fits(&plan) {
             let (sizes, frames) = (Sizes::new(&plan), (self.prepared, finished));
-            let [missing, goes] = memory.change(&plan, &sizes, frames);
+            let [missing, goes] = memory.change(&sizes, frames);
             self.device.check_budget("a cut's memory", missing, goes)?;
             self.state.found = None;
             memory.reserve(&self.device, (&plan, sizes), frames)?;

@@ -30,8 +30,8 @@ impl<P: Owner> Memory<P> {
     }
 
     /// The bytes that [`reserve`](Self::reserve) allocates beside what it keeps, and those that it frees before that.
-    pub(super) fn change(&self, plan: &P, need: &Sizes<P>, frames: (u64, u64)) -> [u64; 2] {
-        let (all, spare) = self.kept(plan, need);
+    pub(super) fn change(&self, need: &Sizes<P>, frames: (u64, u64)) -> [u64; 2] {
+        let (all, spare) = self.kept(need);
         let (prepared, finished) = frames;
         // What no frame in flight uses goes before the rest comes.
         let goes = self.buffers.as_ref().filter(|_| finished >= prepared);
@@ -40,7 +40,7 @@ impl<P: Owner> Memory<P> {
     }
 
     /// The sizes of all buffers, those that are there and larger than needed included, and the buffers that can be kept.
-    fn kept(&self, plan: &P, need: &Sizes<P>) -> (Sizes<P>, Spare) {
+    fn kept(&self, need: &Sizes<P>) -> (Sizes<P>, Spare) {
         let had = self.buffers.as_deref();
         let serving = had.filter(|buffers| buffers.sizes().serve(need));
         // Nothing becomes smaller, so that going back to a frame before allocates nothing.
@@ -48,7 +48,7 @@ impl<P: Owner> Memory<P> {
             Some(buffers) => need.clone().or(buffers.sizes()),
             None => need.clone(),
         };
-        let spare = serving.map(|buffers| buffers.spare(plan, &all, |has, needs| has >= needs));
+        let spare = serving.map(|buffers| buffers.spare(&all, |has, needs| has >= needs));
         (all, spare.unwrap_or_default())
     }
 
@@ -60,7 +60,7 @@ impl<P: Owner> Memory<P> {
         (plan, need): (&P, Sizes<P>),
         (prepared, finished): (u64, u64),
     ) -> Result<()> {
-        let (all, spare) = self.kept(plan, &need);
+        let (all, spare) = self.kept(&need);
         // Free first: both together may not fit.
         let outgrown = self.buffers.take();
         let had_spare = outgrown.is_some();
@@ -86,7 +86,7 @@ impl<P: Owner> Memory<P> {
             return Ok(());
         }
         let all = need.or(had.sizes());
-        let spare = had.spare(plan, &all, |has, needs| has >= needs);
+        let spare = had.spare(&all, |has, needs| has >= needs);
         let missing = spare.missing(&all);
         device.check_budget("a frame that takes over from the one before", missing, 0)?;
         let made = Buffers::new(device, plan, all, &spare)?;
@@ -106,8 +106,7 @@ impl<P: Owner> Memory<P> {
         let had = self.buffers.take();
         if let Some(plan) = plan {
             let sizes = Sizes::new(plan);
-            let exact =
-                |buffers: &Buffers<P>| buffers.spare(plan, &sizes, |has, needs| has == needs);
+            let exact = |buffers: &Buffers<P>| buffers.spare(&sizes, |has, needs| has == needs);
             let spare = had.as_deref().map(exact).unwrap_or_default();
             drop(had);
             self.buffers = Some(Arc::new(Buffers::new(device, plan, sizes, &spare)?));

@@ -351,6 +351,25 @@ fn a_planes_low_word_alone_changes_what_it_should() {
     }
 }
 
+/// A camera that stands still goes on with the tiles' picture, also where quads have been drawn since tiles first were.
+#[test]
+fn what_quads_leave_between_is_not_taken_for_the_tiles_picture() {
+    let (_, scene) = common::generated_scenes(2_000).remove(0);
+    let camera = common::views(&scene, 3, common::scaled((125, 95)))[1];
+    let clip = cut(&scene, DVec3::new(0.8, 0.3, 0.5).normalize(), 0.45);
+    let frames = [
+        (Mode::None, Raster::Tiles),
+        (Mode::None, Raster::Quad),
+        (Mode::None, Raster::Tiles),
+        (Mode::Hard, Raster::Tiles),
+    ];
+    let frame = |(mode, raster)| {
+        let settings = Settings::default().mode(mode).raster(raster);
+        (camera, clip.clone(), settings)
+    };
+    Pair::new(&scene).walk(frames.map(frame));
+}
+
 #[test]
 fn another_scene_is_not_taken_for_the_one_before() {
     let mut scenes = common::generated_scenes(2_000).into_iter();

@@ -1,4 +1,4 @@
-//! Cameras: a plain struct, and four ways to make one; `matrices` has a fifth.
+//! Cameras: a plain struct, and four ways to make one; `matrices` and `shots` have others.
 
 use rara::glam::{DMat3, DMat4, DVec3};
 use rara::scene::Bounds;
@@ -211,7 +211,7 @@ pub unsafe extern "C" fn rara_camera_frame(
 }
 
 /// Writes the camera that `made` gives.
-unsafe fn make(
+pub(crate) unsafe fn make(
     camera: *mut RaraCamera,
     camera_size: usize,
     made: impl FnOnce() -> Result<Camera>,

@@ -29,6 +29,14 @@ pub struct RaraPlane {
     pub offset: f64,
 }
 
+impl RaraPlane {
+    /// The plane; `name` is that of the argument.
+    pub(crate) fn plane(&self, name: &str) -> Result<Plane> {
+        let made = Plane::new(DVec3::from(self.normal), self.offset);
+        made.map_err(|error| Error::Invalid(format!("{name}: {error}")))
+    }
+}
+
 /// How several planes combine.
 pub type RaraClipOp = u32;
 /// A point is visible if every plane keeps it.
@@ -51,12 +59,9 @@ pub unsafe extern "C" fn rara_clip_of_planes(
                 Clip::MAX_SURFACES
             ));
         }
-        let plane = |(index, plane): (usize, &RaraPlane)| {
-            let made = Plane::new(DVec3::from(plane.normal), plane.offset);
-            made.map_err(|error| Error::Invalid(format!("planes[{index}]: {error}")))
-        };
         let planes = list(planes, count, "planes")?.iter().enumerate();
-        let planes: Vec<_> = planes.map(plane).collect::<Result<_>>()?;
+        let named = |(index, plane): (usize, &RaraPlane)| plane.plane(&format!("planes[{index}]"));
+        let planes: Vec<_> = planes.map(named).collect::<Result<_>>()?;
         Ok(RaraClip(Clip::of(planes, choice(op, "op")?)))
     })
 }

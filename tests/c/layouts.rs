@@ -16,6 +16,7 @@ use rara_c::device::*;
 use rara_c::gaussians::*;
 use rara_c::layer::*;
 use rara_c::layer_info::*;
+use rara_c::layers::*;
 use rara_c::lent::*;
 use rara_c::matrices::*;
 use rara_c::picker::*;

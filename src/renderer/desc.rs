@@ -31,7 +31,8 @@ setters! {
     #[non_exhaustive]
     pub struct RendererDesc {
         /// Format of the colour attachment that [`Renderer::draw`](super::Renderer::draw) draws into. It must be blendable;
-        /// splats are trained to be blended as stored, so sRGB formats, which blend in linear light, give another picture.
+        /// splats are trained to be blended as stored, so sRGB formats, which blend in linear light, are for
+        /// [`ColorSpace::Linear`].
         pub color_format: vk::Format,
         /// The meaning of the attachment's numbers.
         pub color_space: ColorSpace,
@@ -172,6 +173,13 @@ impl RendererDesc {
             )));
         }
         self.check_color(device, self.color_format)?;
+        if self.blends_stored_as_light() {
+            log::warn!(
+                "RendererDesc::color_format is {:?}, in which devices blend in linear light, and color_space is Stored: colours come out \
+                 wrong; draw into a UNORM view of the image, or set ColorSpace::Linear",
+                self.color_format
+            );
+        }
         if let Some(expected) = self.expected_depth {
             if !SUMS.contains(&expected.format) {
                 return Err(Error::Invalid(format!(
@@ -183,6 +191,11 @@ impl RendererDesc {
         }
         self.depth
             .map_or(Ok(()), |depth| self.check_depth(device, depth))
+    }
+
+    /// True when the device would take colours as they are stored for linear light.
+    fn blends_stored_as_light(&self) -> bool {
+        self.color_space == ColorSpace::Stored && SRGB.contains(&self.color_format)
     }
 
     fn check_depth(&self, device: &Device, depth: DepthDesc) -> Result<()> {
@@ -254,6 +267,15 @@ const DEPTHS: [(vk::Format, bool); 6] = [
     (vk::Format::D32_SFLOAT_S8_UINT, true),
 ];
 
+/// Formats that devices decode before they blend, and encode afterwards.
+const SRGB: [vk::Format; 5] = [
+    vk::Format::R8G8B8_SRGB,
+    vk::Format::B8G8R8_SRGB,
+    vk::Format::R8G8B8A8_SRGB,
+    vk::Format::B8G8R8A8_SRGB,
+    vk::Format::A8B8G8R8_SRGB_PACK32,
+];
+
 /// Formats that hold sums of depths and of alphas.
 const SUMS: [vk::Format; 6] = [
     vk::Format::R16G16_SFLOAT,
@@ -263,3 +285,17 @@ const SUMS: [vk::Format; 6] = [
     vk::Format::R32G32B32_SFLOAT,
     vk::Format::R32G32B32A32_SFLOAT,
 ];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stored_colours_in_a_view_that_blends_in_linear_light_are_noticed() {
+        let desc = RendererDesc::new;
+        assert!(desc(vk::Format::B8G8R8A8_SRGB).blends_stored_as_light());
+        assert!(!desc(vk::Format::B8G8R8A8_UNORM).blends_stored_as_light());
+        let linear = desc(vk::Format::B8G8R8A8_SRGB).color_space(ColorSpace::Linear);
+        assert!(!linear.blends_stored_as_light());
+    }
+}

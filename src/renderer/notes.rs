@@ -1,7 +1,7 @@
 //! The log's lines about frames, for whoever embeds the renderer: how splats become pixels and why, where that changes, and
 //! at trace level each frame and the outcome of the oldest one.
 
-use super::{ConfiguredFrame, Renderer};
+use super::{ConfiguredFrame, Renderer, choose};
 use rara_base::counted::counted;
 
 impl Renderer {
@@ -9,7 +9,17 @@ impl Renderer {
     pub(super) fn note_frame(&mut self, frame: &ConfiguredFrame) {
         let raster = frame.state.decision.raster(self.fell_back());
         if raster != self.noted {
-            log::info!("splats become pixels by {}: {}", raster.path, raster.reason);
+            // What takes several times as long is worth more than a note.
+            let level = match raster.reason == choose::HIDDEN {
+                true => log::Level::Warn,
+                false => log::Level::Info,
+            };
+            log::log!(
+                level,
+                "splats become pixels by {}: {}",
+                raster.path,
+                raster.reason
+            );
             self.noted = raster;
         }
         // Nothing is put together where no logger asks for lines; C's function is one that asks for all.

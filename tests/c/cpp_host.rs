@@ -59,7 +59,7 @@ fn draw(host: &Path, device: &str, scene: &Path, what: &str) -> Vec<u8> {
     assert!(output.status.success() && said.is_empty(), "{what}: {said}");
     let printed = String::from_utf8_lossy(&output.stdout);
     assert!(
-        printed.contains(" visible, ") && printed.contains(" cutoff "),
+        printed.contains(" visible, ") && printed.contains(" tiles "), // which are the fast way
         "{printed}"
     );
     let bytes = std::fs::read(&picture).expect("a picture");
@@ -89,7 +89,7 @@ fn truth(scene: &Gaussians) -> (Vec<u8>, String) {
     );
     let settings = Settings::default()
         .background(Some([0.0; 3]))
-        .raster(Raster::Quad); // tiles would need the host's depth
+        .raster(Raster::Tiles);
     headless.load_as(scene, ShFormat::Packed).expect("uploads");
     headless.render(&camera, &clip, &settings).expect("renders");
     let picture = headless.picture().expect("reads back");
@@ -148,7 +148,12 @@ fn a_host_in_cpp_draws_splats_and_a_mesh() {
     let pixels = mesh.chunks(3).zip(splats.chunks(3)).zip(both.chunks(3));
     for ((mesh, splats), both) in pixels {
         if mesh == [0; 3] {
-            assert_eq!(both, splats, "beside the mesh all splats are there");
+            // Tiles end a column of pixels when all of them are saturated, which those that the mesh covers hardly are.
+            let apart = both.iter().zip(splats).map(|(a, b)| a.abs_diff(*b));
+            assert!(
+                apart.max() <= Some(1),
+                "beside the mesh all splats are there: {both:?} for {splats:?}"
+            );
             outside += 1;
         } else if mesh == both {
             hidden += usize::from(splats != [0; 3]);

@@ -70,7 +70,8 @@ fn the_header_is_c_and_the_guides_snippet_is_cpp() {
         panic!("{} snippets of C++ in the guide", snippets.len());
     };
     // A compiler checks all of a template only where it is used.
-    let used = "void use(Splats &s, VkCommandBuffer cmd) { frame(s, cmd, [] {}); }";
+    let used =
+        "void use(Splats &s, VkCommandBuffer cmd) { frame(s, cmd, VK_NULL_HANDLE, [] {}, [] {}); }";
     let code = format!("{snippet}\n{used}\n");
     assert_compiles(&compiler, &["-std=c++17"], "guide.cpp", &code);
 }

@@ -48,7 +48,7 @@ int main(int count, char **arguments) {
 
     // The host's targets, mesh and command buffer.
     Image colour = make_image(COLOUR, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT, VK_IMAGE_ASPECT_COLOR_BIT);
-    Image depth = make_image(DEPTH, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT, VK_IMAGE_ASPECT_DEPTH_BIT);
+    Image depth = make_image(DEPTH, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT, VK_IMAGE_ASPECT_DEPTH_BIT);
     Readback readback = make_readback();
     VkPushConstantRange range{VK_SHADER_STAGE_VERTEX_BIT, 0, sizeof(Push)};
     VkPipelineLayoutCreateInfo layout_info{VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO, nullptr, 0, 0, nullptr, 1, &range};
@@ -88,6 +88,7 @@ int main(int count, char **arguments) {
     RARA(rara_depth_desc_default(&tested, sizeof tested, DEPTH, REVERSED));
     RaraRendererDesc desc;
     RARA(rara_renderer_desc_default(&desc, sizeof desc, COLOUR));
+    tested.readable = VK_TRUE;  // rara_renderer_prepare is given the depths: without them splats are quads, several times as slow
     desc.depth = &tested, desc.timing = VK_TRUE;
     desc.bindings = validation ? RARA_BINDINGS_BOUND : RARA_BINDINGS_ADDRESS;  // the layer can watch bound buffers
     RaraRenderer *renderer;
@@ -115,13 +116,12 @@ int main(int count, char **arguments) {
         push.world_to_clip[4 * column + 3] = float(p[2]);
     }
 
-    // A frame: stages before the host's rendering scope, then the mesh and the splats inside it.
+    // A frame: the mesh in a rendering scope, then rara's stages, which read its depths, then the splats in a second scope.
     RaraFrame *frame;
     RARA(rara_renderer_configure(renderer, scene, &camera, clip, nullptr, &frame));
     rara_clip_destroy(clip);
     VkCommandBufferBeginInfo begin{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO, nullptr, VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
     VK(vkBeginCommandBuffer(cmd, &begin));
-    RARA(rara_renderer_prepare(renderer, cmd, scene, nullptr, frame));
     barrier(cmd, colour.image, VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
     barrier(cmd, depth.image, VK_IMAGE_ASPECT_DEPTH_BIT, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL);
     VkRenderingAttachmentInfo onto{VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO, nullptr, colour.view, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
@@ -138,6 +138,16 @@ int main(int count, char **arguments) {
     vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
     vkCmdPushConstants(cmd, layout, VK_SHADER_STAGE_VERTEX_BIT, 0, sizeof push, &push);
     if (what != "splats") vkCmdDraw(cmd, 24, 1, 0, 0);
+    vkCmdEndRendering(cmd);
+    barrier(cmd, depth.image, VK_IMAGE_ASPECT_DEPTH_BIT, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+    RaraDepthImage drawn;
+    RARA(rara_depth_image_default(&drawn, sizeof drawn, depth.image, W, H));
+    RARA(rara_renderer_prepare(renderer, cmd, scene, &drawn, frame));  // copies the depths
+    barrier(cmd, depth.image, VK_IMAGE_ASPECT_DEPTH_BIT, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL);
+    barrier(cmd, colour.image, VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
+    onto.loadOp = behind.loadOp = VK_ATTACHMENT_LOAD_OP_LOAD;
+    vkCmdBeginRendering(cmd, &scope);
+    vkCmdSetScissor(cmd, 0, 1, &scope.renderArea);
     if (what != "mesh") RARA(rara_renderer_draw(renderer, cmd, 0, 0, frame));
     rara_frame_destroy(frame);
     vkCmdEndRendering(cmd);

@@ -1,15 +1,18 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Reads the tiles' picture, which is blended onto what the host has drawn: as it is, or where one of both is linear light and
-// the other is not turned into the host's once, after the splats were blended.
+// the other is not turned into the host's once, after the splats were blended. The expected depths that lie behind it are blended
+// likewise.
 struct Params {
     vec2 origin; // where the viewport begins in the attachment, px
+    float unit; // what depths are multiplied by
 };
 #define PARAMS Params
 #include "frame.glsl"
 
 layout(constant_id = 0) const bool LINEAR = false; // what was blended as stored becomes linear light
 layout(constant_id = 1) const bool STORED = false; // linear light becomes what is stored
+layout(constant_id = 2) const bool EXPECTED_DEPTH = false; // draws expected depths: depth times alpha, and alpha
 
 BUFFER(readonly, 1, vec4, picture)
 
@@ -37,7 +40,14 @@ void main() {
     bool is_filled = ((bit < 32u ? filled.x : filled.y) >> bit % 32u & 1u) != 0u;
     colour = vec4(0.0);
     if (is_filled) {
-        colour = picture.at[pixel.y * size.x + pixel.x];
+        uint at = pixel.y * size.x + pixel.x;
+        if (EXPECTED_DEPTH) {
+            vec4 pair = picture.at[size.x * size.y + at / 2u];
+            vec2 sums = at % 2u == 0u ? pair.xy : pair.zw;
+            colour = vec4(sums.x * push.params.unit, sums.y, 0.0, sums.y);
+        } else {
+            colour = picture.at[at];
+        }
     }
     // A premultiplied colour is the pixel's own times its alpha.
     if (LINEAR && colour.a > 0.0) {

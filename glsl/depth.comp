@@ -9,9 +9,10 @@ layout(local_size_x = SPLAT_GROUP_SIZE) in;
 BUFFER(readonly, 2, Gaussian, gaussians)
 BUFFER(readonly, 3, uint, splat_gaussians)
 BUFFER(readonly, 4, FrameCounts, counts)
-BUFFER(writeonly, 5, SplatDepth, depths)
+BUFFER(writeonly, 5, vec4, splats)
 BUFFER(readonly, 6, uint, shortlists)
 #include "region/gaussian_side.glsl"
+#include "splats.glsl"
 
 // By how much the mean of a.u changes a pixel, given the pixel: the update of affine_plane in cutoff.comp.
 vec2 slope_of(Footprint f, vec3 c, vec3 a) {
@@ -74,5 +75,7 @@ void main() {
             depth.near = bound;
         }
     }
-    depths.at[splat_index] = depth;
+    SPLAT_MEAN_DEPTH(splat_index) = depth.mean;
+    SPLAT_FAR_BOUND(splat_index) = depth.far;
+    SPLAT_NEAR_BOUND(splat_index) = depth.near;
 }

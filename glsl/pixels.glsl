@@ -19,4 +19,12 @@ void write_pixel(uint at, vec4 colour) {
     }
 }
 
+// Writes a pixel's expected depth, which has its place behind all pixels: the sum of its splats' depths, each times what it adds to
+// the pixel's alpha, and that alpha.
+void write_expected_depth(uint at, uint pixel_count, vec2 sums) {
+    uint place = (PIXELS == PIXELS_BYTE ? 1u : 4u) * pixel_count + 2u * at;
+    picture_words.at[place] = floatBitsToUint(sums.x);
+    picture_words.at[place + 1u] = floatBitsToUint(sums.y);
+}
+
 #endif

@@ -5,8 +5,6 @@
 #include "splat_params.glsl"
 #include "corners.glsl"
 
-BUFFER(readonly, 6, SplatDepth, depths)
-
 layout(location = 0) flat out vec4 centre_conic;
 layout(location = 1) flat out vec4 conic_cut;
 layout(location = 2) flat out vec4 slope_curvature;
@@ -17,12 +15,11 @@ layout(location = 5) flat out vec4 near;
 void main() {
     uint splat_index = splat_index_at(gl_InstanceIndex);
     Splat splat = splat_at(splat_index);
-    SplatDepth depth = depths.at[splat_index];
     gl_Position = corner(splat, quads.at[splat_index], gl_VertexIndex);
     centre_conic = fragment_centre(splat);
     conic_cut = splat.conic_cut;
     slope_curvature = vec4(splat.colour_cut.w, splat.curvature_depth.xyz);
-    mean = depth.mean;
-    far = depth.far;
-    near = depth.near;
+    mean = SPLAT_MEAN_DEPTH(splat_index);
+    far = SPLAT_FAR_BOUND(splat_index);
+    near = SPLAT_NEAR_BOUND(splat_index);
 }

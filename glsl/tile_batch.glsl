@@ -49,6 +49,22 @@ void hand_over(Seen splat, Record record) {
     mine_record = record;
 }
 
+SplatDepth mine_depth;
+
+void hand_over_depth(SplatDepth depth) {
+    mine_depth = depth;
+}
+
+vec4 mean_depth_taken_over(uint i) {
+    return OF(i, mine_depth.mean);
+}
+
+// What the clip leaves of a splat that is cut lies between its bounds.
+void take_over_bounds(uint i, inout SplatDepth depth) {
+    depth.far = OF(i, mine_depth.far);
+    depth.near = OF(i, mine_depth.near);
+}
+
 Seen taken_over(uint i) {
     Seen splat;
     splat.centre_conic = OF(i, mine.centre_conic);
@@ -118,11 +134,25 @@ uint number_in_batch(uint, uint first, uint end, out float x) {
 }
 
 shared Seen batch[TILE_WIDTH * TILE_HEIGHT];
+shared SplatDepth batch_depths[EXPECTED_DEPTH ? TILE_WIDTH * TILE_HEIGHT : 1u];
 shared uint at_work; // 1 when an invocation is not done
 
 void hand_over(Seen splat, Record) {
     batch[IN_BATCH] = splat;
     barrier();
+}
+
+// Before the splat itself, whose barrier is for both.
+void hand_over_depth(SplatDepth depth) {
+    batch_depths[IN_BATCH] = depth;
+}
+
+vec4 mean_depth_taken_over(uint i) {
+    return batch_depths[i].mean;
+}
+
+void take_over_bounds(uint i, inout SplatDepth depth) {
+    depth = batch_depths[i];
 }
 
 Seen taken_over(uint i) {

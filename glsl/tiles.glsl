@@ -29,6 +29,8 @@ layout(constant_id = 9) const uint SHOW = SHOW_COLOUR; // SHOW_*
 // True where the tiles that hold anything are listed: first those that need no code for several surfaces, then, from the end on,
 // the others, and behind all of them how many each list has.
 layout(constant_id = 11) const bool LISTED = false;
+// True where each pixel's expected depth is found too.
+layout(constant_id = 17) const bool EXPECTED_DEPTH = false;
 
 BUFFER(readonly, 1, vec4, splats)
 BUFFER(readonly, 2, uint, tile_splats)
@@ -43,6 +45,7 @@ BUFFER(readonly, 9, uint, tile_list)
 #include "occluders.glsl"
 #include "pixels.glsl"
 #include "weight_colour.glsl"
+#include "mean_depth.glsl"
 
 const uint NO_TILE = ~0u;
 
@@ -52,6 +55,7 @@ vec3 sum[ROWS];
 float transmittance[ROWS];
 float alphas[SHOW >= SHOW_MEAN ? ROWS : 1u]; // their sum, or the most that one splat has added
 float occluder[ROWS]; // the farness beyond which splats are hidden
+float depths[EXPECTED_DEPTH ? ROWS : 1u]; // the sum of their splats' depths, each times what it adds to the alpha
 bool done; // no splat changes them any more
 
 // The part of a splat that the loop reads.
@@ -63,6 +67,8 @@ struct Seen {
     vec3 curvature;
     float far; // farness of its depth
 };
+// How deep it is, where depths are expected.
+SplatDepth seen_depth;
 #include "tile_batch.glsl"
 
 // Applies a cut splat's weights to its alphas, and returns them in `weight`.
@@ -103,7 +109,35 @@ bool opacities(Seen splat, float u, float v, out float alpha[ROWS], out float we
     return !done;
 }
 
-void add(Seen splat, float alpha[ROWS], float weight[ROWS]) {
+// How deep the splat of `seen_depth` is in the column's pixels.
+void whole_depths(vec2 delta, out float here[ROWS]) {
+    for (uint row = 0u; row < ROWS; row++) {
+        here[row] = seen_depth.mean.x + seen_depth.mean.y * delta.x + seen_depth.mean.z * (delta.y + float(row));
+    }
+}
+
+// The same of what the clip leaves of it.
+void cut_depths(vec2 delta, out float here[ROWS]) {
+    for (uint row = 0u; row < ROWS; row++) {
+        here[row] = mean_depth(seen_depth, delta + vec2(0.0, row));
+    }
+}
+
+// A whole splat whose mean depth the clip changes all the same.
+const float Z_BOUNDED = 0.5 * (Z_WHOLE + Z_CUT_AWAY);
+// The z from which on a bound changes a mean depth by less than 2e-5 deviations.
+const float UNBOUNDED = 4.5;
+
+// True when the clip may change the splat's mean depth in the tile, which the middle of a union does in any case.
+bool is_bounded(SplatDepth depth, vec2 delta) {
+    vec2 reach = 0.5 * vec2(TILE_WIDTH, TILE_HEIGHT);
+    float far = depth.far.x + dot(depth.far.yz, delta) - dot(abs(depth.far.yz), reach);
+    float near = depth.near.x + dot(depth.near.yz, delta) - dot(abs(depth.near.yz), reach);
+    return depth.mean.w != 0.0 || min(far, near) < UNBOUNDED;
+}
+
+// `here` is the splat's depth in each pixel, where depths are expected.
+void add(Seen splat, float here[ROWS], float alpha[ROWS], float weight[ROWS]) {
     float most = 0.0;
     for (uint row = 0u; row < ROWS; row++) {
         float added = transmittance[row] * alpha[row];
@@ -123,6 +157,9 @@ void add(Seen splat, float alpha[ROWS], float weight[ROWS]) {
         } else {
             sum[row] += added * (SHOW == SHOW_WEIGHT ? weight_colour(weight[row]) : splat.colour);
         }
+        if (EXPECTED_DEPTH) {
+            depths[row] += added * here[row];
+        }
         transmittance[row] -= added;
         most = max(most, transmittance[row]);
     }
@@ -134,7 +171,11 @@ void blend(Seen splat, vec2 delta) {
     float alpha[ROWS];
     float weight[ROWS];
     if (opacities(splat, splat.centre_conic.z * delta.x, splat.centre_conic.w * delta.x, alpha, weight)) {
-        add(splat, alpha, weight);
+        float here[ROWS];
+        if (EXPECTED_DEPTH) {
+            whole_depths(delta, here);
+        }
+        add(splat, here, alpha, weight);
     }
 }
 
@@ -149,7 +190,15 @@ void blend_cut(Seen splat, Record record, vec2 delta) {
         if (CLIP_MODE >= MODE_RARA && splat.linear.x < Z_RANGE) {
             weigh(splat, record, delta, vec2(u, v + splat.conic_opacity.x * delta.y), alpha, weight);
         }
-        add(splat, alpha, weight);
+        float here[ROWS];
+        if (EXPECTED_DEPTH) {
+            if (CLIP_MODE >= MODE_RARA && (WHOLE_ALONE || splat.linear.x != Z_WHOLE)) {
+                cut_depths(delta, here);
+            } else {
+                whole_depths(delta, here);
+            }
+        }
+        add(splat, here, alpha, weight);
     }
 }
 
@@ -225,6 +274,9 @@ void main() {
         if (SHOW >= SHOW_MEAN) {
             alphas[row] = 0.0;
         }
+        if (EXPECTED_DEPTH) {
+            depths[row] = 0.0;
+        }
         occluder[row] = DEPTH_FORM != DEPTH_NONE ? occluder_farness(pixel + uvec2(0u, row)) : 0.0;
     }
     for (uint first = begin; first < end && !all_done(); first += BATCH) {
@@ -232,11 +284,21 @@ void main() {
         uint number = number_in_batch(begin, first, end, x);
         Record record;
         Seen own = load(number, x, tile_middle, record);
+        if (EXPECTED_DEPTH) {
+            SplatDepth depth = SplatDepth(SPLAT_MEAN_DEPTH(number), SPLAT_FAR_BOUND(number), SPLAT_NEAR_BOUND(number));
+            if (CLIP_MODE >= MODE_RARA && own.linear.x == Z_WHOLE && is_bounded(depth, tile_middle - own.centre_conic.xy)) {
+                own.linear.x = Z_BOUNDED;
+            }
+            hand_over_depth(depth);
+        }
         hand_over(own, record);
         uint count = min(end - first, BATCH);
         for (uint i = 0u; i < count; i++) {
             // All invocations run this, also those that are done: subgroup operations need every one.
             Seen splat = taken_over(i);
+            if (EXPECTED_DEPTH) {
+                seen_depth.mean = mean_depth_taken_over(i);
+            }
             vec2 delta = pixel_centre - splat.centre_conic.xy;
             if (WHOLE_ALONE && splat.linear.x == Z_WHOLE) {
                 if (!done) {
@@ -244,6 +306,9 @@ void main() {
                 }
             } else {
                 record = weight_taken_over(i, splat);
+                if (EXPECTED_DEPTH && CLIP_MODE >= MODE_RARA) {
+                    take_over_bounds(i, seen_depth);
+                }
                 if (!done && !((RECLIPPED || CLIP_MODE >= MODE_RARA) && is_away(splat, delta))) {
                     blend_cut(splat, record, delta);
                 }
@@ -254,7 +319,11 @@ void main() {
         if (pixel.x < size.x && pixel.y + row < size.y) {
             float alpha = SHOW == SHOW_STRONGEST ? alphas[row] : 1.0 - transmittance[row];
             vec3 colour = SHOW == SHOW_MEAN ? sum[row] * (alpha / max(alphas[row], 1e-30)) : sum[row];
-            write_pixel((pixel.y + row) * size.x + pixel.x, vec4(colour, alpha));
+            uint at = (pixel.y + row) * size.x + pixel.x;
+            write_pixel(at, vec4(colour, alpha));
+            if (EXPECTED_DEPTH) {
+                write_expected_depth(at, size.x * size.y, vec2(depths[row], 1.0 - transmittance[row]));
+            }
         }
     }
 }

@@ -11,7 +11,7 @@ use crate::passes::stage::Targets;
 use crate::passes::storage::buffers;
 use crate::passes::{shared, tiles};
 use crate::types::FrameCounts;
-use rara_gpu::Drawer;
+use rara_gpu::{Attachments, Drawer};
 use rara_scene::settings::Show;
 
 /// The draw of the tiles' picture, in the light of the target where that is another and colours are shown.
@@ -21,19 +21,31 @@ pub(crate) fn draw(plan: &EyePlan, targets: Targets) -> Draw<composite::Program>
     let constants = composite::Constants {
         linear: converts && targets.linear,
         stored: converts && !targets.linear,
+        expected_depth: false,
     };
     let shaders = [&composite::VERT, &composite::FRAG];
     Draw::new(shaders, constants, targets.colour, false)
 }
 
+/// The draw of the expected depths that tiles have found.
+pub(crate) fn draw_depth(attachments: Attachments) -> Draw<composite::Program> {
+    let constants = composite::Constants {
+        linear: false,
+        stored: false,
+        expected_depth: true,
+    };
+    let shaders = [&composite::VERT, &composite::FRAG];
+    Draw::new(shaders, constants, attachments, false)
+}
+
 /// Blends the tiles' picture onto what the host has drawn, inside the host's rendering scope. `origin` is where its viewport
-/// begins, px.
+/// begins, px, and depths are multiplied by `unit`.
 pub(crate) fn record(
     drawer: &mut Drawer<'_>,
     pipelines: &Pipelines,
-    (plan, b): (&EyePlan, &Buffers<EyePlan>),
-    targets: Targets,
+    (draw, b): (Draw<composite::Program>, &Buffers<EyePlan>),
     origin: [f32; 2],
+    unit: f64,
 ) {
     let buffers = buffers!(composite {
         shared::MEMORY => [frame],
@@ -44,7 +56,8 @@ pub(crate) fn record(
         b.get(&shared::MEMORY.counts),
         offset_of!(FrameCounts, composite) as u64,
     );
-    let params = composite::Params { origin };
+    let unit = unit as f32;
+    let params = composite::Params { origin, unit };
     let buffers = (buffers, |storage| b.get(storage));
-    draw(plan, targets).draw(pipelines, drawer, buffers, params, args);
+    draw.draw(pipelines, drawer, buffers, params, args);
 }

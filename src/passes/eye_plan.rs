@@ -58,9 +58,6 @@ pub(crate) struct Way {
     pub(crate) sort_passes: u32,
     /// True when the splats' depths are wanted.
     pub(crate) expects_depth: bool,
-    /// True when splats are drawn as quads. Where tiles' lists have no room, the quads are boxes that
-    /// nobody has to find before.
-    pub(crate) needs_quads: bool,
     /// Colours, or a debug view.
     pub(crate) show: Show,
     pub(crate) colours: SplatColours,
@@ -125,7 +122,6 @@ impl EyePlan {
                 sh_format: scene.sh_format,
                 sort_passes: keys.passes(),
                 expects_depth: eye.expects_depth,
-                needs_quads: !is_tiled || eye.expects_depth,
                 show: settings.show,
                 colours: match settings.show {
                     Show::Strongest => SplatColours::Numbers,
@@ -233,9 +229,10 @@ impl EyePlan {
         self.is_tiled() && self.cut.shape != DeviceShape::Cpu
     }
 
-    /// True when the quads of the splats have to be found.
+    /// True when the quads of the splats have to be found. Where tiles' lists have no room, quads are drawn too, but boxes that
+    /// nobody has to find before.
     pub(crate) fn needs_quads(&self) -> bool {
-        self.way.needs_quads
+        !self.is_tiled()
     }
 
     /// True when the Gaussians in view have to be found.

@@ -45,6 +45,8 @@ static OF_EYE: [&Stage<EyePlan>; 12] = [
     &project::STAGE,
     // Orders them by depth.
     &sort::STAGE,
+    // Finds how deep they are, for hosts that ask. The barrier that the next stage needs in any case is this one's too.
+    &depth::STAGE,
     // Finds which of them each tile of pixels holds.
     &bin::STAGE,
     // Finds, where the camera stands still and the clip has moved, which Gaussians in view change their side,
@@ -55,8 +57,6 @@ static OF_EYE: [&Stage<EyePlan>; 12] = [
     &reclip::RECUT,
     // Draws the pixels, front to back.
     &tiles::STAGE,
-    // Finds how deep the splats are, for hosts that ask.
-    &depth::STAGE,
 ];
 
 /// The name of the draw, the last step, which a frame does without where the tiles' picture is the picture.
@@ -172,10 +172,6 @@ pub(crate) fn record(
             false => recorder.ready_for_host(&picture),
         }
     }
-    if plan.way.expects_depth {
-        let depths = [&depth::MEMORY.depths, &depth::MEMORY.depth_draw].map(|s| b.get(s));
-        recorder.ready_to_draw(&depths);
-    }
     recorder.label("counts", |r| {
         let all = vk::BufferCopy::default().size(counts.size());
         r.copy(counts, readback, &[all]);
@@ -232,6 +228,9 @@ impl EyePlan {
         }
         if let Some(attachments) = targets.expected_depth {
             need(depth::draw(self, attachments).key());
+            if self.is_tiled() {
+                need(composite::draw_depth(attachments).key());
+            }
         }
     }
 

@@ -9,7 +9,7 @@ use crate::passes::shared::{self, SCENE};
 use crate::passes::stage::Stage;
 use crate::passes::storage::{buffers, memory};
 use crate::passes::{compact, cutoff};
-use crate::types::{self, Quad, Splat};
+use crate::types::{self, Quad, Splat, SplatDepth};
 use rara_base::limits;
 use rara_gpu::DeviceShape;
 use rara_scene::precision::ShFormat;
@@ -17,12 +17,15 @@ use rara_scene::precision::ShFormat;
 pub(crate) static STAGE: Stage<EyePlan> = Stage::when_finding_view("project", &[STORAGES], record);
 
 memory! { EyePlan:
-    /// As they lie in glsl/splats.glsl: with pipelines for GPUs some of their numbers apart, four splats to a vector.
+    /// As they lie in glsl/splats.glsl: with pipelines for GPUs some of their numbers apart, four splats to a vector, and where
+    /// depths are expected what makes those behind.
     splats: |plan| {
         let whole = plan.gaussians() * size_of::<Splat>() as u64;
+        let apart = plan.gaussians().div_ceil(4) * 16;
         match plan.cut.shape {
+            _ if plan.way.expects_depth => whole + apart + plan.gaussians() * size_of::<SplatDepth>() as u64,
             DeviceShape::Cpu => whole,
-            DeviceShape::Gpu { .. } => whole + plan.gaussians().div_ceil(4) * 16,
+            DeviceShape::Gpu { .. } => whole + apart,
         }
     };
     /// What the splats are drawn with; empty where no quads are.

@@ -27,10 +27,19 @@ pub(crate) static STAGE: Stage<EyePlan> = Stage {
 };
 
 memory! { EyePlan:
-    /// The picture that the tiles make.
-    tile_picture: |plan| plan.when_tiled(plan.pixels() * plan.way.tile_pixels.bytes()), in EyePlan::picture_location;
+    /// The picture that the tiles make, and behind it the expected depths of its pixels, two of them to a vector.
+    tile_picture: |plan| plan.when_tiled(plan.pixels() * plan.way.tile_pixels.bytes() + expected_depths(plan)),
+        in EyePlan::picture_location;
     /// The host's depth; empty where it hides nothing.
     occluders: |plan| plan.occluders.map_or(0, |_| plan.when_tiled(4 * plan.pixels()));
+}
+
+/// The bytes of the expected depths, where there are such.
+fn expected_depths(plan: &EyePlan) -> u64 {
+    match plan.way.expects_depth {
+        true => plan.pixels().div_ceil(2) * 16,
+        false => 0,
+    }
 }
 
 /// The tiles that a dispatch draws: all, or with the pipelines for GPUs one of the two lists of those that hold anything.
@@ -77,6 +86,7 @@ fn pipeline(plan: &EyePlan, list: List) -> Pipeline<tiles::Program> {
         show: weight::show_code(plan.way.show),
         pixels: plan.way.tile_pixels.code(),
         listed: list != List::All,
+        expected_depth: plan.way.expects_depth,
     };
     let shader = if work.subgroups {
         &tiles::SUBGROUP_COMP

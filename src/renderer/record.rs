@@ -158,7 +158,8 @@ impl Renderer {
             let frame = (plan, buffers);
             passes::splat::record(drawer, pipelines, frame, targets.colour, origin, map);
             if plan.is_tiled() {
-                composite::record(drawer, pipelines, frame, targets, origin);
+                let picture = (composite::draw(plan, targets), buffers);
+                composite::record(drawer, pipelines, picture, origin, 1.0);
             }
         });
         Ok(())
@@ -170,8 +171,8 @@ impl Renderer {
     /// green is that alpha. Where the host has cleared both to 0, red / green is the pixel's expected depth along the view
     /// axis, world units; further scenes over it keep that meaning. A splat's depth in a pixel is the mean of what the clip leaves of the Gaussian on
     /// the pixel's line of sight, to first order of perspective; of several planes the strictest that keeps the far side
-    /// counts, and the strictest that keeps the near one. The depths are drawn as quads, however the colours are. `origin`
-    /// is as in [`draw`](Self::draw).
+    /// counts, and the strictest that keeps the near one. Tiles find the depths with the colours; splats that are drawn as quads are
+    /// drawn once more. `origin` is as in [`draw`](Self::draw).
     ///
     /// # Safety
     /// As for [`draw`](Self::draw), in such a scope.
@@ -204,6 +205,10 @@ impl Renderer {
             let frame = (plan, buffers);
             let map = (decision.depth_map, decision.unit);
             passes::depth::record_draw(drawer, pipelines, frame, attachments, origin, map);
+            if plan.is_tiled() {
+                let depths = (composite::draw_depth(attachments), buffers);
+                composite::record(drawer, pipelines, depths, origin, decision.unit);
+            }
         });
         Ok(())
     }

@@ -40,8 +40,11 @@ fn depths<'a>(
     let indices: Vec<u32> = bytemuck::pod_collect_to_vec(&read("splat_gaussians"));
     let number = |index: u32| gaussians[index as usize].scale[3].to_bits() as usize;
     let numbers = indices.into_iter().map(number);
-    let depths = read("depths");
-    let depths = depths.chunks_exact(size_of::<SplatDepth>());
+    // They follow the splats: see glsl/splats.glsl.
+    let count = scene.gaussians();
+    let splats = read("splats");
+    let depths =
+        splats[16 * (4 * count + count.div_ceil(4))..].chunks_exact(size_of::<SplatDepth>());
     let depths = depths.map(bytemuck::pod_read_unaligned);
     numbers.zip(depths).take(splat_gaussians).collect()
 }

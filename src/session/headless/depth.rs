@@ -8,7 +8,7 @@ use rara_base::error::{Error, Result};
 use rara_gpu::{BufferDesc, Drawer, ImageDesc, Location};
 use rara_scene::camera::Camera;
 use rara_scene::precision::TargetFormat;
-use rara_scene::settings::{Raster, Settings, Show};
+use rara_scene::settings::{Settings, Show};
 
 impl Headless {
     /// Draws the expected depth of each pixel, row by row from the top left: the mean depth along the view axis, world
@@ -41,9 +41,8 @@ impl Headless {
         let mut renderer = session
             .renderer
             .with_expected_depth(vulkan_format(format))?;
-        // Depths are drawn as quads in any case, and lists of tiles could lack room. They are the same whatever a picture
-        // shows, of which some is made by tiles alone.
-        let drawn = settings.raster(Raster::Quad).show(Show::Colour);
+        // Depths are the same whatever a picture shows, of which some is made by tiles alone.
+        let drawn = settings.show(Show::Colour);
         let frame = renderer.configure(scene, camera, kept, &drawn)?;
         let image = device.create_image(&ImageDesc {
             name: "expected depth",

@@ -20,9 +20,9 @@ pub const RARA_AOV_DEPTH: RaraAovs = 1;
 pub const RARA_AOV_NORMAL: RaraAovs = 2;
 /// The number, from 0, of the layer whose splats add most to alpha; -1 in an empty pixel.
 pub const RARA_AOV_LAYER: RaraAovs = 4;
-/// The mean share that the clip leaves of the splats, 1 if it cuts none of them; 0 in an empty pixel.
+/// The mean share of the splats that the clip keeps, 1 if it cuts none of them; 0 in an empty pixel.
 pub const RARA_AOV_WEIGHT: RaraAovs = 8;
-/// The number of splats in the pixel, until it is saturated.
+/// The number of splats in the pixel, front to back, until the pixel is opaque.
 pub const RARA_AOV_COUNT: RaraAovs = 16;
 
 /// All quantities in the order of their bits, and how many channels each has.

@@ -24,14 +24,21 @@ pub(super) struct Help {
 /// Returns the definitions of a program's flags as people see them, given those that were written.
 pub(super) fn command(definitions: Command) -> Command {
     let program = definitions.get_name().to_owned();
+    let listed = format!(
+        "The help topics are {}.",
+        all_topics(&definitions).join(", ")
+    );
     let help = Arg::new("help")
         .short('h')
         .long("help")
         .help("Print help")
         .action(ArgAction::HelpShort)
         .display_order(1000);
+    let overview = definitions.get_after_help().map(StyledStr::to_string);
+    let overview = overview.map_or(String::new(), |overview| format!("{overview}\n\n"));
     let command = definitions
         .disable_help_flag(true)
+        .after_help(format!("{overview}{listed}"))
         .mut_subcommands(|part| {
             // What a command writes comes first, and the rest as it is defined.
             let mut order = 0;
@@ -41,17 +48,18 @@ pub(super) fn command(definitions: Command) -> Command {
                 arg.display_order(if is_output { 0 } else { order })
             });
             let topics = topics(&part);
-            if topics.is_empty() {
-                return part;
-            }
             let names: Vec<_> = topics.iter().map(|heading| topic(heading)).collect();
-            let more = format!(
-                "{0} help {1} explains the flags of the command, and {0} help TOPIC explains those of the {2} {3}.",
-                program,
-                part.get_name(),
-                if names.len() == 1 { "topic" } else { "topics" },
-                names.join(", ")
-            );
+            let more = match part.get_name() {
+                "help" => listed.clone(),
+                _ if topics.is_empty() => return part,
+                name => format!(
+                    "{0} help {1} explains the flags of the command, and {0} help TOPIC explains those of the {2} {3}.",
+                    program,
+                    name,
+                    if names.len() == 1 { "topic" } else { "topics" },
+                    names.join(", ")
+                ),
+            };
             let after = part.get_after_help().map(StyledStr::to_string);
             let after = after.map_or(String::new(), |after| format!("{after}\n\n"));
             part.after_help(format!("{after}{more}"))
@@ -92,6 +100,18 @@ fn topics(command: &Command) -> Vec<String> {
     topics
 }
 
+/// The names of the topics of all commands, each once.
+fn all_topics(program: &Command) -> Vec<String> {
+    let mut all: Vec<String> = Vec::new();
+    for heading in program.get_subcommands().flat_map(topics) {
+        let topic = topic(&heading);
+        if !all.contains(&topic) {
+            all.push(topic);
+        }
+    }
+    all
+}
+
 /// The name by which a heading is asked for: its first word.
 fn topic(heading: &str) -> String {
     let word = heading.split(|letter: char| !letter.is_alphabetic()).next();
@@ -126,12 +146,7 @@ impl Help {
                 return Ok(output::answer(&format!("{flags}\n{whose}"))?);
             }
         }
-        for heading in command.get_subcommands().flat_map(topics) {
-            let topic = topic(&heading);
-            if !known.contains(&topic) {
-                known.push(topic);
-            }
-        }
+        known.extend(all_topics(&command));
         let meant = super::values::meant(&of, known.iter().map(String::as_str));
         Err(Failure::Usage(format!(
             "help {of}: there is no such command or topic; there are {}{meant}; {beside}",

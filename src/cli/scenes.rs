@@ -21,10 +21,11 @@ fn files() -> String {
         "Scene files or folders; several become the layers of a scene; - is standard input\n\nThe formats are {}. A folder may \
          be an SOG scene, or one that a trainer wrote: rara then reads the scene with the most training steps. A layer has the \
          name of its file, or NAME if the file is given as NAME=FILE. For rara render, a pattern such as scene_{{:03}}.ply stands \
-         for the scenes of a film: each picture shows the file with the next number.\n\nA .json file is a list of layers, of \
-         which only path is required: {{\"layers\":[{{\"path\":\"skin.ply\",\"name\":\"skin\",\"opacity\":0.5,\"visible\":true, \
-         \"antialiased\":true,\"low_pass\":0.3,\"position\":[x,y,z],\"rotation\":[w,x,y,z],\"scale\":s or [x,y,z],\"clip\":{{...}} or \
-         \"clip_expr\":\"...\", \"select\":[{{\"name\":\"vessels\",\"where\":\"label in 3,4\"}}]}}]}}",
+         for the scenes of a film: each picture shows the file with the next number.\n\nA .json file is a list of layers; \
+         in each layer only path is required: {{\"layers\":[{{\"path\":\"skin.ply\",\"name\":\"skin\",\"opacity\":0.5, \
+         \"visible\":true, \"antialiased\":true,\"low_pass\":0.3,\"position\":[x,y,z],\"rotation\":[w,x,y,z], \
+         \"scale\":s or [x,y,z],\"clip\":{{...}} or \"clip_expr\":\"...\", \
+         \"select\":[{{\"name\":\"vessels\",\"where\":\"label in 3,4\"}}]}}]}}",
         Format::readable()
     )
 }

@@ -15,7 +15,7 @@ named! {
         None = "none",
         /// Each splat is kept or dropped as a whole, by its centre.
         Hard = "hard",
-        /// In each pixel, a cut splat keeps the visible share of the ray's length inside its ellipsoid (the paper).
+        /// In each pixel, a cut splat keeps the visible share of the ray's length inside its ellipsoid (RaRa Clipper paper).
         Rara = "rara",
         /// In each pixel, a cut splat keeps the visible share of its mass along the ray, with the low-pass of 3DGS.
         #[default]

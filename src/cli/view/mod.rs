@@ -39,7 +39,7 @@ Examples:
   rara view scene.ply --clip-expr 'all(box:0,0,0,1,1,1, not(sphere:1,0,0,.5))'
   rara view body.ply organ.ply --clip plane:1,0,0,0 --layer-clip organ=whole
   rara view scene.ply --section axial=0.4
-  printf 'plane +0.1\\nscreenshot cut.png\\nquit\\n' | rara view scene.ply --script -
+  printf 'shape +0.1\\nscreenshot cut.png\\nquit\\n' | rara view scene.ply --script -
 
 rara help view lists what the keys and the mouse do, and the actions of scripts.")]
 #[command(after_long_help = format!("\
@@ -47,20 +47,20 @@ rara help view lists what the keys and the mouse do, and the actions of scripts.
 
 The window's title has the time of the last frame on the device, and of its three longest stages;
 T prints the times of all stages. A screenshot is the picture that rara render draws with the same
-camera, clip and settings. Its camera is saved beside it, for rara render --camera. Neither file
-replaces another one.
+camera, clip and settings. Its camera is saved beside it, for rara render --camera. Neither
+overwrites an existing file.
 
 Scripts have an action on each line, and # begins a comment. The window shows the result of an
 action before the next one begins:
   turn DX,DY             degrees          shape on, off, flip, next
-  shift DX,DY            pixels           shape x, y, z        along an axis; a plane across it
+  shift DX,DY            pixels           shape x, y, z        align with an axis; plane: across
   zoom STEPS                              shape +0.1, -0.1     along its normal, world units
   move X,Y,Z             world units      shape SHAPE          replaces the held shape
   camera orbit, fly, reset, next          plane NX,NY,NZ,D     replaces the held shape
-  camera perspective, orthographic        drag DX,DY           pixels
+  camera perspective, orthographic        drag DX,DY           the held shape, pixels
   clip next              of a dropped file
-  mode none, hard, rara, exact            tilt DX,DY           degrees
-  screenshot [FILE]                       scale FACTOR
+  mode none, hard, rara, exact            tilt DX,DY           the held shape, degrees
+  screenshot [FILE]                       scale FACTOR         the held shape
   resize WxH                              layer N|NAME [on|off]
   minimise, restore                       edit next, frame, N|NAME, release
   timings, flags                          outline on, off

@@ -42,9 +42,9 @@ named! {
         Normal = "normal",
         /// Channel layer: the number, from 0, of the layer whose splats add most to alpha; -1 in an empty pixel
         Layer = "layer",
-        /// Channel weight: the mean share that the clip leaves of the splats, 1 if it cuts none of them; 0 in an empty pixel
+        /// Channel weight: the mean share of the splats that the clip keeps, 1 if it cuts none of them; 0 in an empty pixel
         Weight = "weight",
-        /// Channel count: the number of splats in the pixel, until it is saturated
+        /// Channel count: the number of splats in the pixel, front to back, until the pixel is opaque
         Count = "count",
     }
 }

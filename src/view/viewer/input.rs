@@ -21,16 +21,16 @@ Mouse:
 Keys:
   Tab                          orbit about the scene, or fly
   W A S D Q E                  forward, left, back, right, down, up (Shift: slowly)
+  G                            take hold of the next shape
   arrows                       turn the view; with Shift the held shape
   + -                          nearer, farther
   O                            orthographic, or in perspective
   R, N                         back to the start; the next camera of --view all
   0 1 2 3                      mode none, hard, rara, exact
   P, I                         turn the clip on or off; keep the other side of the held shape
-  X Y Z                        turn the held shape along an axis, a plane across it through the middle
+  X Y Z                        align the held shape with an axis; put a plane across it, mid-scene
   Page Up, Page Down           move the held shape along its normal or from the eye (Shift: a tenth)
   J K                          make the held shape smaller or larger
-  G                            take hold of the next shape
   B                            outlines of the shapes on or off
   F1 to F9                     layer 1 to 9 on or off
   L                            edit the clip of the next layer; after the last one, the frame's clip
@@ -43,7 +43,7 @@ Keys:
   Esc                          quit
 Files dropped on the window:
   a scene                      in place of this one; several are its layers
-  a clip (.json)               in place of the clip that is edited; V takes the next of several with names
+  a clip (.json)               replaces the edited clip; V: the next named clip of the file
   cameras (.json)              the key N chooses the next one";
 
 /// How many degrees an arrow key turns.

@@ -111,25 +111,6 @@ impl<'a, 'r, P: Owner> Recording<'a, 'r, P> {
         }
     }
 
-    /// Writes a few bytes to the beginning of a buffer.
-    pub(super) fn update(&mut self, name: impl Into<P::Name>, bytes: &[u8]) {
-        if let Target::Commands(recorder, resources) = &mut self.target {
-            recorder.update(resources.buffer(name.into()), 0, bytes);
-        }
-    }
-
-    pub(super) fn copy(
-        &mut self,
-        from: impl Into<P::Name>,
-        to: impl Into<P::Name>,
-        region: vk::BufferCopy,
-    ) {
-        if let Target::Commands(recorder, resources) = &mut self.target {
-            let [from, to] = [from.into(), to.into()].map(|name| resources.buffer(name));
-            recorder.copy(from, to, &[region]);
-        }
-    }
-
     /// Records a stage under its name.
     pub(super) fn stage(&mut self, name: &'static str, record: fn(&mut Recording<'_, '_, P>)) {
         let plan = self.plan;

@@ -68,9 +68,8 @@ pub(super) fn raster(
     })
 }
 
-/// The reason for what takes several times as long as tiles: 911 ms for 150 on a CPU driver, 23 to 110 for .8 to 2.6 on an H200.
-pub(super) const HIDDEN: &str = "tiles, which take a fraction of the time, need the host's depth before its scope: draw what is \
-     opaque in an earlier scope, set DepthDesc::readable, and give prepare the depth image";
+pub(super) const HIDDEN: &str =
+    "tiles need the host's depth before its scope (DepthDesc::readable)";
 
 /// The bytes of a tile's pixels, and the most that a picture of them may take: what every device can allocate at once.
 const TILE_BYTES: u64 = (limits::TILE_WIDTH * limits::TILE_HEIGHT) as u64 * 16;

@@ -4,8 +4,10 @@ use rara::ash::vk;
 use rara::gpu::{Bindings, Target};
 use rara::{ColorSpace, ExpectedDepthDesc, RendererDesc, Result};
 
-use crate::boundary::{RaraResult, Versioned, guard, invalid, read, versioned, write};
+use crate::boundary::{RaraResult, Versioned, exclusive, guard, invalid, read, versioned, write};
 use crate::depth::{self, RaraDepthDesc};
+use crate::device::RaraDevice;
+use crate::handles::alive;
 
 /// How shaders reach buffers.
 pub type RaraBindings = u32;
@@ -17,6 +19,23 @@ pub const RARA_BINDINGS_BOUND: RaraBindings = 1;
 /// The constants of the frame bound and all else by address, for CPU drivers: they compile it in a fraction of the time that bound
 /// buffers take, and run it faster than addresses alone. Needs what RARA_BINDINGS_BOUND needs.
 pub const RARA_BINDINGS_MIXED: RaraBindings = 2;
+
+/// The way that suits a device: RARA_BINDINGS_MIXED for CPU drivers that can bind, else RARA_BINDINGS_ADDRESS.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_bindings_suiting(
+    device: *const RaraDevice,
+    bindings: *mut RaraBindings,
+) -> RaraResult {
+    guard(|| {
+        let device = alive(device, "device")?;
+        *exclusive(bindings, "bindings")? = match Bindings::suiting(&device.0) {
+            Bindings::Address => RARA_BINDINGS_ADDRESS,
+            Bindings::Bound => RARA_BINDINGS_BOUND,
+            Bindings::Mixed => RARA_BINDINGS_MIXED,
+        };
+        Ok(())
+    })
+}
 
 /// The encoding of the colours in the colour attachment.
 pub type RaraColorSpace = u32;

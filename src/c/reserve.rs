@@ -1,5 +1,7 @@
 //! Room for what will come, and the memory that it takes.
 
+use std::ffi::c_char;
+
 use rara::{FrameLimits, Preset, Result, Settings};
 
 use crate::boundary::{RaraResult, Versioned, exclusive, guard, read, read_list, versioned, write};
@@ -11,6 +13,7 @@ use crate::renderer::{RaraRenderer, with};
 use crate::scene::{RARA_SH_FORMAT_PACKED, RaraSceneBuffers, RaraShFormat};
 use crate::settings::RaraSettings;
 use crate::settings::choice;
+use crate::text::fixed;
 
 /// The most that frames will ask for, for rara_renderer_reserve.
 #[repr(C)]
@@ -195,6 +198,46 @@ pub unsafe extern "C" fn rara_device_memory(
             pipeline_count: device.pipeline_count(),
         };
         write(memory, memory_size, &found, "memory")
+    })
+}
+
+/// Room for the name of what takes memory, the NUL included.
+pub const RARA_MEMORY_NAME_SIZE: usize = 64;
+
+/// The memory that buffers or images of one name take together. It never grows.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct RaraNamedBytes {
+    /// Their name, which is their debug name too: UTF-8, cut off where it does not fit.
+    pub name: [c_char; RARA_MEMORY_NAME_SIZE],
+    /// What they take, bytes, with what alignment adds.
+    pub bytes: u64,
+}
+
+/// What takes the device memory that rara has allocated, the largest first.
+///
+/// On entry `*count` is how many there is room for at `parts`; it becomes how many there are. No more are written than there is
+/// room for, and none where `parts` is null.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_device_memory_by_name(
+    device: *const RaraDevice,
+    parts: *mut RaraNamedBytes,
+    count: *mut usize,
+) -> RaraResult {
+    guard(|| {
+        let device = alive(device, "device")?;
+        let count = exclusive(count, "count")?;
+        let found = device.0.memory_by_name();
+        for (place, part) in found.iter().take(*count).enumerate() {
+            if !parts.is_null() {
+                parts.add(place).write(RaraNamedBytes {
+                    name: fixed(&part.name),
+                    bytes: part.bytes,
+                });
+            }
+        }
+        *count = found.len();
+        Ok(())
     })
 }
 

@@ -28,6 +28,28 @@ fn memory(device: *const RaraDevice) -> RaraDeviceMemory {
     }
 }
 
+/// What takes that memory, by name, and all of it together.
+fn parts(device: *const RaraDevice) -> (Vec<String>, u64) {
+    let mut count = 0;
+    // SAFETY: the device is alive, and there is as much room as `count` says.
+    unsafe {
+        assert_ok(rara_device_memory_by_name(device, null_mut(), &mut count));
+        let mut parts: Vec<RaraNamedBytes> = vec![std::mem::zeroed(); count];
+        assert_ok(rara_device_memory_by_name(
+            device,
+            parts.as_mut_ptr(),
+            &mut count,
+        ));
+        assert_eq!(count, parts.len());
+        let name = |part: &RaraNamedBytes| {
+            let text = std::ffi::CStr::from_ptr(part.name.as_ptr());
+            text.to_str().expect("UTF-8").to_owned()
+        };
+        let bytes = parts.iter().map(|part| part.bytes).sum();
+        (parts.iter().map(name).collect(), bytes)
+    }
+}
+
 fn made(device: *const RaraDevice) -> (u64, u64) {
     let memory = memory(device);
     (memory.pipeline_count, memory.allocation_count)
@@ -88,6 +110,13 @@ fn a_host_in_c_reserves_within_a_budget_and_gives_back() {
             assert_fails(refused, RARA_ERROR_INVALID, "layers is 0");
             limits.layers = 1;
             assert_ok(rara_renderer_reserve(renderer, &limits));
+
+            let (names, bytes) = parts(device);
+            assert!(names.iter().any(|name| name == "tile_splats"), "{names:?}");
+            assert_eq!(bytes, memory(device).bytes);
+            let mut bindings = 99;
+            assert_ok(rara_bindings_suiting(device, &mut bindings));
+            assert!(bindings <= RARA_BINDINGS_MIXED);
 
             let reserved = made(device);
             let planes = [([1.0, 0.0, 0.0], 0.0), ([0.0, 1.0, 0.0], 0.3)]

@@ -210,11 +210,11 @@ pub const RARA_MEMORY_NAME_SIZE: usize = 64;
 pub struct RaraNamedBytes {
     /// Their name, which is their debug name too: UTF-8, cut off where it does not fit.
     pub name: [c_char; RARA_MEMORY_NAME_SIZE],
-    /// What they take, bytes, with what alignment adds.
+    /// The bytes that they take, with what alignment adds.
     pub bytes: u64,
 }
 
-/// What takes the device memory that rara has allocated, the largest first.
+/// Lists what takes the device memory that rara has allocated, the largest first.
 ///
 /// On entry `*count` is how many there is room for at `parts`; it becomes how many there are. No more are written than there is
 /// room for, and none where `parts` is null.

@@ -7,7 +7,7 @@ use rara::scene::cross_section;
 use rara::{Camera, Error, Picture, Result, Scene};
 use rara_shots::{Framing, Lens, Orbit, Panorama, Sections, Spline, Visible};
 
-use crate::boundary::{RaraResult, Versioned, guard, invalid, list, read_list, shared, write};
+use crate::boundary::{RaraResult, guard, invalid, list, read_list, shared, write};
 use crate::camera::{self, NOWHERE, RaraCamera, make, vector};
 use crate::clip::RaraPlane;
 use crate::gaussians::RaraGaussians;
@@ -81,8 +81,10 @@ pub unsafe extern "C" fn rara_cameras_orbit(
                 "pivot is {pivot}, axis is {axis} and turns is {turns}: give finite numbers, and an axis with a length"
             ));
         }
-        let orbit = Orbit::new(turns, count).cameras(given, (pivot, axis));
-        write_all(&orbit, cameras, camera_size)
+        let orbit = Orbit::new(turns, count);
+        write_all(cameras, camera_size, || {
+            Ok(orbit.cameras(given, (pivot, axis)))
+        })
     })
 }
 
@@ -109,8 +111,8 @@ pub unsafe extern "C" fn rara_cameras_path(
             .enumerate()
             .map(named)
             .collect::<Result<_>>()?;
-        let path = Spline::through(&through, closed != 0)?.cameras(count);
-        write_all(&path, cameras, camera_size)
+        let path = Spline::through(&through, closed != 0)?;
+        write_all(cameras, camera_size, || Ok(path.cameras(count)))
     })
 }
 
@@ -126,7 +128,7 @@ pub unsafe extern "C" fn rara_cameras_panorama(
 ) -> RaraResult {
     guard(|| {
         let middle = camera::camera(camera)?;
-        write_all(&panorama(width)?.faces(&middle), cameras, camera_size)
+        write_all(cameras, camera_size, || Ok(panorama(width)?.faces(&middle)))
     })
 }
 
@@ -184,7 +186,7 @@ fn panorama(width: u32) -> Result<Panorama> {
     Panorama::new((width, width / 2))
 }
 
-/// What is found in the scene of a host's layers.
+/// Finds something in the scene of a host's layers.
 unsafe fn seen<T>(
     layers: *const RaraLayer,
     layer_count: usize,
@@ -195,16 +197,17 @@ unsafe fn seen<T>(
     find(&of_layers(&layers, &numbers))
 }
 
-/// Writes cameras one after the other where a host has room for them.
-unsafe fn write_all(from: &[Camera], to: *mut RaraCamera, camera_size: usize) -> Result<()> {
-    write(to, camera_size, &Versioned::BLANK, "cameras")?;
-    for (index, &camera) in from.iter().enumerate() {
-        write(
-            to.byte_add(index * camera_size),
-            camera_size,
-            &camera.into(),
-            "cameras",
-        )?;
+/// Makes cameras, and writes them one after the other where a host has room for them. Room that is null is named before any is
+/// made.
+unsafe fn write_all<C: AsRef<[Camera]>>(
+    to: *mut RaraCamera,
+    camera_size: usize,
+    made: impl FnOnce() -> Result<C>,
+) -> Result<()> {
+    shared(to.cast_const().cast::<u8>(), "cameras")?;
+    for (index, &camera) in made()?.as_ref().iter().enumerate() {
+        let place = to.byte_add(index * camera_size);
+        write(place, camera_size, &camera.into(), "cameras")?;
     }
     Ok(())
 }

@@ -143,6 +143,17 @@ fn orbits_and_paths_are_those_of_the_library() {
         "axis is [0, 0, 0]",
     );
     assert_fails(turned(UP, f64::NAN), RARA_ERROR_INVALID, "turns is NaN");
+    // Nothing is written where there is no room, and nothing is made for room that is null.
+    let mut none = NOWHERE;
+    let turned_to = |count, to: *mut RaraCamera| {
+        // SAFETY: as above.
+        unsafe { rara_cameras_orbit(&given, pivot.as_ptr(), UP.as_ptr(), 1.0, count, to, SIZE) }
+    };
+    none.width = 77;
+    assert_eq!(turned_to(0, &raw mut none), RARA_OK);
+    assert_eq!(none.width, 77);
+    let lost = turned_to(u32::MAX, null_mut());
+    assert_fails(lost, RARA_ERROR_INVALID, "cameras is null");
     let mut broken = through;
     broken[3].fx = -1.0;
     let gone = |through: &[RaraCamera]| {

@@ -142,7 +142,7 @@ void hand_over(Seen splat, Record) {
     barrier();
 }
 
-// Before the splat itself, whose barrier is for both.
+// This comes before hand_over, whose barrier is for both.
 void hand_over_depth(SplatDepth depth) {
     batch_depths[IN_BATCH] = depth;
 }

@@ -4,7 +4,7 @@ use super::*;
 use crate::canvas::with_host;
 use rara::glam::{DQuat, DVec3};
 use rara::gpu::Bindings;
-use rara::{ExpectedDepthDesc, Mode, Placement};
+use rara::{ExpectedDepthDesc, FrameLimits, Mode, Placement};
 
 const FORMAT: vk::Format = vk::Format::R32G32_SFLOAT;
 
@@ -174,6 +174,41 @@ fn expected_depths_are_behind_the_cut_and_before_the_mesh() {
                 (f64::from(alpha) - truth[1]).abs() < 2e-3,
                 "{alpha} {truth:?}"
             );
+        }
+    });
+}
+
+/// Tiles whose lists have no room leave the depths to quads, as they do the colours.
+#[test]
+fn depths_of_tiles_without_room_are_those_of_quads() {
+    let world = World::new();
+    let scene = rara::ShFormat::Float;
+    with_host(true, |host, device| {
+        let first = first(device);
+        let canvas = Canvas::new(&host.lend(), device, CanvasDesc::new(VIEW, FORMAT));
+        let there = SceneBuffers::upload(device, &world.scene, scene).expect("uploads");
+        let desc = RendererDesc::new(FLOATS).expected_depth(Some(ExpectedDepthDesc::new(FORMAT)));
+        let [tiles, quads] = [Raster::Tiles, Raster::Quad].map(|raster| {
+            let settings = world.settings.raster(raster);
+            let limits = FrameLimits::new(VIEW, world.scene.len() as u32)
+                .planes(1)
+                .settings(vec![settings])
+                .pairs(Some(16));
+            let mut renderer = first.sharing(desc).expect("a renderer");
+            renderer.reserve(&limits).expect("there is memory");
+            let configured = renderer.configure(&there, &world.camera, &world.clip, &settings);
+            let frame = Frame {
+                depths: true,
+                ..Frame::new(VIEW)
+            };
+            let pixels = canvas.draw_frame(&mut renderer, &there, configured, &frame);
+            assert_eq!(renderer.fell_back(), raster == Raster::Tiles);
+            pixels
+        });
+        assert!(quads.iter().filter(|pixel| pixel[1] > 0.02).count() > 2_000);
+        for (tiles, quads) in tiles.iter().zip(&quads) {
+            let apart = [0, 1].map(|channel| (tiles[channel] - quads[channel]).abs());
+            assert!(apart[0] < 1e-4 && apart[1] < 1e-5, "{tiles:?} {quads:?}");
         }
     });
 }

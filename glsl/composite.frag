@@ -3,20 +3,12 @@
 // Reads the tiles' picture, which is blended onto what the host has drawn: as it is, or where one of both is linear light and
 // the other is not turned into the host's once, after the splats were blended. The expected depths that lie behind it are blended
 // likewise.
-struct Params {
-    vec2 origin; // where the viewport begins in the attachment, px
-    float unit; // what depths are multiplied by
-};
-#define PARAMS Params
-#include "frame.glsl"
+#include "composite.glsl"
 
 layout(constant_id = 0) const bool LINEAR = false; // what was blended as stored becomes linear light
 layout(constant_id = 1) const bool STORED = false; // linear light becomes what is stored
 layout(constant_id = 2) const bool EXPECTED_DEPTH = false; // draws expected depths: depth times alpha, and alpha
 
-BUFFER(readonly, 1, vec4, picture)
-
-layout(location = 0) flat in uvec2 filled; // of this quad's tiles, as composite.vert says
 layout(location = 0) out vec4 colour;
 
 // The linear light of colours as sRGB stores them; beyond white the curve goes on.
@@ -32,17 +24,11 @@ vec3 stored_colour(vec3 light) {
 }
 
 void main() {
-    vec2 pixel_centre = gl_FragCoord.xy - push.params.origin;
-    uvec2 size = uvec2(VIEW.size.xy);
-    uvec2 pixel = min(uvec2(pixel_centre), size - 1u);
-    uvec2 tile = pixel / uvec2(TILE_WIDTH, TILE_HEIGHT) % QUAD_TILES;
-    uint bit = tile.y * QUAD_TILES + tile.x;
-    bool is_filled = ((bit < 32u ? filled.x : filled.y) >> bit % 32u & 1u) != 0u;
+    uint at;
     colour = vec4(0.0);
-    if (is_filled) {
-        uint at = pixel.y * size.x + pixel.x;
+    if (find_pixel(at)) {
         if (EXPECTED_DEPTH) {
-            vec4 pair = picture.at[size.x * size.y + at / 2u];
+            vec4 pair = picture.at[pixels_end() + at / 2u];
             vec2 sums = at % 2u == 0u ? pair.xy : pair.zw;
             colour = vec4(sums.x * push.params.unit, sums.y, 0.0, sums.y);
         } else {

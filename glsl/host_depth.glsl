@@ -4,6 +4,9 @@
 #define RARA_HOST_DEPTH
 #include "frame.glsl"
 
+// The depth of a pixel that has none.
+const float NO_DEPTH = 3e38;
+
 float host_depth(float z) {
     precise float falling = is_orthographic() ? -push.params.depth_scale * z : push.params.depth_scale / z;
     precise float depth = push.params.depth_offset + falling;

@@ -27,4 +27,11 @@ void write_expected_depth(uint at, uint pixel_count, vec2 sums) {
     picture_words.at[place + 1u] = floatBitsToUint(sums.y);
 }
 
+// Writes a pixel's depth for the host's depth buffer, which has its place behind the expected ones. The picture of a host with such a
+// buffer has pixels of floats.
+void write_depth(uint at, uint pixel_count, float depth) {
+    uint expected = EXPECTED_DEPTH ? (pixel_count + 1u) / 2u : 0u;
+    picture_words.at[4u * (pixel_count + expected) + at] = floatBitsToUint(depth);
+}
+
 #endif

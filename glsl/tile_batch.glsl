@@ -134,7 +134,7 @@ uint number_in_batch(uint, uint first, uint end, out float x) {
 }
 
 shared Seen batch[TILE_WIDTH * TILE_HEIGHT];
-shared SplatDepth batch_depths[EXPECTED_DEPTH ? TILE_WIDTH * TILE_HEIGHT : 1u];
+shared SplatDepth batch_depths[FINDS_DEPTH ? TILE_WIDTH * TILE_HEIGHT : 1u];
 shared uint at_work; // 1 when an invocation is not done
 
 void hand_over(Seen splat, Record) {

@@ -31,6 +31,9 @@ layout(constant_id = 9) const uint SHOW = SHOW_COLOUR; // SHOW_*
 layout(constant_id = 11) const bool LISTED = false;
 // True where each pixel's expected depth is found too.
 layout(constant_id = 17) const bool EXPECTED_DEPTH = false;
+// True where each pixel's depth for the host's depth buffer is found too.
+layout(constant_id = 18) const bool WRITTEN_DEPTH = false;
+const bool FINDS_DEPTH = EXPECTED_DEPTH || WRITTEN_DEPTH;
 
 BUFFER(readonly, 1, vec4, splats)
 BUFFER(readonly, 2, uint, tile_splats)
@@ -56,6 +59,7 @@ float transmittance[ROWS];
 float alphas[SHOW >= SHOW_MEAN ? ROWS : 1u]; // their sum, or the most that one splat has added
 float occluder[ROWS]; // the farness beyond which splats are hidden
 float depths[EXPECTED_DEPTH ? ROWS : 1u]; // the sum of their splats' depths, each times what it adds to the alpha
+float written[WRITTEN_DEPTH ? ROWS : 1u]; // the depth of the splat that makes them as opaque as is asked for
 bool done; // no splat changes them any more
 
 // The part of a splat that the loop reads.
@@ -67,7 +71,7 @@ struct Seen {
     vec3 curvature;
     float far; // farness of its depth
 };
-// How deep it is, where depths are expected.
+// How deep it is, where depths are found.
 SplatDepth seen_depth;
 #include "tile_batch.glsl"
 
@@ -136,7 +140,7 @@ bool is_bounded(SplatDepth depth, vec2 delta) {
     return depth.mean.w != 0.0 || min(far, near) < UNBOUNDED;
 }
 
-// `here` is the splat's depth in each pixel, where depths are expected.
+// `here` is the splat's depth in each pixel, where depths are found.
 void add(Seen splat, float here[ROWS], float alpha[ROWS], float weight[ROWS]) {
     float most = 0.0;
     for (uint row = 0u; row < ROWS; row++) {
@@ -160,6 +164,10 @@ void add(Seen splat, float here[ROWS], float alpha[ROWS], float weight[ROWS]) {
         if (EXPECTED_DEPTH) {
             depths[row] += added * here[row];
         }
+        if (WRITTEN_DEPTH && transmittance[row] > EYE.tiles.written_transmittance
+            && transmittance[row] - added <= EYE.tiles.written_transmittance) {
+            written[row] = here[row];
+        }
         transmittance[row] -= added;
         most = max(most, transmittance[row]);
     }
@@ -172,7 +180,7 @@ void blend(Seen splat, vec2 delta) {
     float weight[ROWS];
     if (opacities(splat, splat.centre_conic.z * delta.x, splat.centre_conic.w * delta.x, alpha, weight)) {
         float here[ROWS];
-        if (EXPECTED_DEPTH) {
+        if (FINDS_DEPTH) {
             whole_depths(delta, here);
         }
         add(splat, here, alpha, weight);
@@ -191,7 +199,7 @@ void blend_cut(Seen splat, Record record, vec2 delta) {
             weigh(splat, record, delta, vec2(u, v + splat.conic_opacity.x * delta.y), alpha, weight);
         }
         float here[ROWS];
-        if (EXPECTED_DEPTH) {
+        if (FINDS_DEPTH) {
             if (CLIP_MODE >= MODE_RARA && (WHOLE_ALONE || splat.linear.x != Z_WHOLE)) {
                 cut_depths(delta, here);
             } else {
@@ -277,6 +285,9 @@ void main() {
         if (EXPECTED_DEPTH) {
             depths[row] = 0.0;
         }
+        if (WRITTEN_DEPTH) {
+            written[row] = NO_DEPTH;
+        }
         occluder[row] = DEPTH_FORM != DEPTH_NONE ? occluder_farness(pixel + uvec2(0u, row)) : 0.0;
     }
     for (uint first = begin; first < end && !all_done(); first += BATCH) {
@@ -284,7 +295,7 @@ void main() {
         uint number = number_in_batch(begin, first, end, x);
         Record record;
         Seen own = load(number, x, tile_middle, record);
-        if (EXPECTED_DEPTH) {
+        if (FINDS_DEPTH) {
             SplatDepth depth = SplatDepth(SPLAT_MEAN_DEPTH(number), SPLAT_FAR_BOUND(number), SPLAT_NEAR_BOUND(number));
             if (CLIP_MODE >= MODE_RARA && own.linear.x == Z_WHOLE && is_bounded(depth, tile_middle - own.centre_conic.xy)) {
                 own.linear.x = Z_BOUNDED;
@@ -296,7 +307,7 @@ void main() {
         for (uint i = 0u; i < count; i++) {
             // All invocations run this, also those that are done: subgroup operations need every one.
             Seen splat = taken_over(i);
-            if (EXPECTED_DEPTH) {
+            if (FINDS_DEPTH) {
                 seen_depth.mean = mean_depth_taken_over(i);
             }
             vec2 delta = pixel_centre - splat.centre_conic.xy;
@@ -306,7 +317,7 @@ void main() {
                 }
             } else {
                 record = weight_taken_over(i, splat);
-                if (EXPECTED_DEPTH && CLIP_MODE >= MODE_RARA) {
+                if (FINDS_DEPTH && CLIP_MODE >= MODE_RARA) {
                     take_over_bounds(i, seen_depth);
                 }
                 if (!done && !((RECLIPPED || CLIP_MODE >= MODE_RARA) && is_away(splat, delta))) {
@@ -323,6 +334,9 @@ void main() {
             write_pixel(at, vec4(colour, alpha));
             if (EXPECTED_DEPTH) {
                 write_expected_depth(at, size.x * size.y, vec2(depths[row], 1.0 - transmittance[row]));
+            }
+            if (WRITTEN_DEPTH) {
+                write_depth(at, size.x * size.y, written[row]);
             }
         }
     }

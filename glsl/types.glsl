@@ -59,7 +59,8 @@ struct TilesData {
     uint row_parts; // parts of the spans of a row of tiles
     float transmittance_min; // below it a tile's pixel is saturated: what lies behind changes it by less
     float alpha_max; // the most that a splat covers of a pixel
-    uint pad[2]; // unused
+    float written_transmittance; // the splat with which a pixel's falls to this has the depth that is written; below 0: none is
+    uint pad; // unused
 };
 
 // How much there is room for, and what happens where that is too little. No pixel depends on it.

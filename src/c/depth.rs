@@ -70,8 +70,8 @@ pub unsafe extern "C" fn rara_depth_map_orthographic(
     })
 }
 
-/// The host's depth attachment. Splats behind what it holds are hidden, and splats write nothing into it. In all of its
-/// pixels a splat has one depth, that of its centre. The host draws opaque things first, then splats.
+/// The host's depth attachment. Splats behind what it holds are hidden. A splat is hidden in all of its pixels by one depth, that
+/// of its centre. The host draws opaque things first, then splats.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct RaraDepthDesc {
@@ -86,6 +86,10 @@ pub struct RaraDepthDesc {
     pub readable: vk::Bool32,
     /// The buffer's value for a depth; rara_renderer_set_depth_map changes it from frame to frame.
     pub map: RaraDepthMap,
+    /// The alpha, above 0 and at most 1, from which rara_renderer_draw writes a pixel's depth, so that what the host draws later
+    /// meets the splats: the depth of the splat with which the pixel reaches it. It needs readable, tiles and an attachment that
+    /// can be written; a frame whose tiles have no room writes none. Default: 0, which writes none.
+    pub write_alpha: f32,
 }
 
 versioned!(RaraDepthDesc);
@@ -107,7 +111,8 @@ pub(crate) unsafe fn depth_desc(desc: *const RaraDepthDesc) -> Result<DepthDesc>
     }
     Ok(DepthDesc::new(desc.format, desc.map.map()?)
         .stencil(desc.stencil != 0)
-        .readable(desc.readable != 0))
+        .readable(desc.readable != 0)
+        .write_alpha((desc.write_alpha != 0.0).then_some(desc.write_alpha)))
 }
 
 /// A depth attachment without stencil, not readable. `desc_size` is sizeof *desc.

@@ -15,7 +15,7 @@ pub struct Attachments {
     pub target: Target,
 }
 
-/// A depth attachment. Pipelines test against it or leave it alone; none writes it.
+/// A depth attachment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct DepthAttachment {
     /// Its format, with or without stencil.

@@ -72,7 +72,7 @@ pub use image::{Image, ImageDesc};
 pub use inspector::{CompiledShader, DispatchNote, DispatchedGroups, RecordedCommands};
 pub use lent::{LentMemory, Location, MemoryRequest, MemorySource};
 pub use memory::{Buffer, BufferDesc};
-pub use pipeline::{ComputeDesc, ComputePipeline, GraphicsDesc, GraphicsPipeline};
+pub use pipeline::{ComputeDesc, ComputePipeline, DepthUse, GraphicsDesc, GraphicsPipeline};
 pub use pipeline_cache::PipelineCacheId;
 pub use pipeline_file::{PipelineCache, PipelineFile};
 pub use recorder::{DepthImage, Groups, Recorder};

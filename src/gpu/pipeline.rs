@@ -95,10 +95,20 @@ fn subgroup(device: &Device) -> Option<u32> {
     }
 }
 
+/// What a graphics pipeline does with a depth attachment.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum DepthUse {
+    /// It leaves it alone.
+    Ignored,
+    /// It leaves out the fragments behind it.
+    Tested,
+    /// It leaves out the fragments behind it, and writes the depths of the others and no colours.
+    Written,
+}
+
 /// The description from which a graphics pipeline is created.
 ///
-/// Pipelines have dynamic viewport and scissor, no vertex input, no culling and no stencil test; they
-/// write no depth. Their shaders only read buffers.
+/// Pipelines have dynamic viewport and scissor, no vertex input, no culling and no stencil test. Their shaders only read buffers.
 #[derive(Debug, Clone, Copy)]
 pub struct GraphicsDesc<'a> {
     pub name: &'static str,
@@ -108,8 +118,8 @@ pub struct GraphicsDesc<'a> {
     /// Specialisation constants of both stages: id and value.
     pub constants: &'a [(u32, u32)],
     pub attachments: Attachments,
-    /// True when fragments behind the depth attachment, where there is one, are left out.
-    pub depth_test: bool,
+    /// What is done with the depth attachment, where there is one.
+    pub depth: DepthUse,
     /// How fragments are blended; `None` overwrites.
     pub blend: Option<vk::PipelineColorBlendAttachmentState>,
     /// The primitives that vertices make; unused with a mesh shader.
@@ -167,8 +177,12 @@ impl GraphicsPipeline {
         let rasterization = vk::PipelineRasterizationStateCreateInfo::default().line_width(1.0);
         let multisample =
             vk::PipelineMultisampleStateCreateInfo::default().rasterization_samples(into.samples);
-        let overwrite = vk::PipelineColorBlendAttachmentState::default()
-            .color_write_mask(vk::ColorComponentFlags::RGBA);
+        let writes_depth = desc.depth == DepthUse::Written;
+        let written = match writes_depth {
+            true => vk::ColorComponentFlags::empty(),
+            false => vk::ColorComponentFlags::RGBA,
+        };
+        let overwrite = vk::PipelineColorBlendAttachmentState::default().color_write_mask(written);
         let blends = [desc.blend.unwrap_or(overwrite)];
         let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&blends);
         let nearer = match into.depth {
@@ -176,7 +190,8 @@ impl GraphicsPipeline {
             _ => vk::CompareOp::LESS_OR_EQUAL,
         };
         let depth = vk::PipelineDepthStencilStateCreateInfo::default()
-            .depth_test_enable(desc.depth_test)
+            .depth_test_enable(desc.depth != DepthUse::Ignored)
+            .depth_write_enable(writes_depth)
             .depth_compare_op(nearer);
         let dynamic_states = [vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR];
         let dynamic = vk::PipelineDynamicStateCreateInfo::default().dynamic_states(&dynamic_states);

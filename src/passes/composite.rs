@@ -11,41 +11,45 @@ use crate::passes::stage::Targets;
 use crate::passes::storage::buffers;
 use crate::passes::{shared, tiles};
 use crate::types::FrameCounts;
-use rara_gpu::{Attachments, Drawer};
-use rara_scene::settings::Show;
+use rara_gpu::{Attachments, DepthUse, Drawer};
+use rara_scene::depth::DepthMap;
 
-/// The draw of the tiles' picture, in the light of the target where that is another and colours are shown.
-pub(crate) fn draw(plan: &EyePlan, targets: Targets) -> Draw<composite::Program> {
-    let shows_colours = matches!(plan.way.show, Show::Colour | Show::Weight);
-    let converts = shows_colours && targets.convert(plan.way.show);
+/// What is drawn of the tiles' picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Part {
+    /// The colours, in the light of the target where that is another.
+    Colours,
+    /// The expected depths, into attachments of their own.
+    ExpectedDepth(Attachments),
+    /// The depths for the host's depth buffer.
+    WrittenDepth,
+}
+
+pub(crate) fn draw(plan: &EyePlan, targets: Targets, part: Part) -> Draw<composite::Program> {
+    let show = plan.way.show;
+    let converts = part == Part::Colours && !show.needs_tiles() && targets.convert(show);
+    let (fragment, attachments, depth) = match part {
+        Part::Colours => (&composite::FRAG, targets.colour, DepthUse::Ignored),
+        Part::ExpectedDepth(attachments) => (&composite::FRAG, attachments, DepthUse::Ignored),
+        Part::WrittenDepth => (&composite::DEPTH_FRAG, targets.colour, DepthUse::Written),
+    };
     let constants = composite::Constants {
         linear: converts && targets.linear,
         stored: converts && !targets.linear,
-        expected_depth: false,
+        expected_depth: matches!(part, Part::ExpectedDepth(_)),
+        behind_expected: part == Part::WrittenDepth && plan.way.expects_depth,
     };
-    let shaders = [&composite::VERT, &composite::FRAG];
-    Draw::new(shaders, constants, targets.colour, false)
+    Draw::new([&composite::VERT, fragment], constants, attachments, depth)
 }
 
-/// The draw of the expected depths that tiles have found.
-pub(crate) fn draw_depth(attachments: Attachments) -> Draw<composite::Program> {
-    let constants = composite::Constants {
-        linear: false,
-        stored: false,
-        expected_depth: true,
-    };
-    let shaders = [&composite::VERT, &composite::FRAG];
-    Draw::new(shaders, constants, attachments, false)
-}
-
-/// Blends the tiles' picture onto what the host has drawn, inside the host's rendering scope. `origin` is where its viewport
-/// begins, px, and depths are multiplied by `unit`.
+/// Blends a part of the tiles' picture onto what the host has drawn, inside the host's rendering scope. `origin` is where its
+/// viewport begins, px; `map` says what its depth buffer holds for a depth, and depths are multiplied by `unit`.
 pub(crate) fn record(
     drawer: &mut Drawer<'_>,
     pipelines: &Pipelines,
     (draw, b): (Draw<composite::Program>, &Buffers<EyePlan>),
     origin: [f32; 2],
-    unit: f64,
+    (map, unit): (Option<DepthMap>, f64),
 ) {
     let buffers = buffers!(composite {
         shared::MEMORY => [frame],
@@ -56,8 +60,13 @@ pub(crate) fn record(
         b.get(&shared::MEMORY.counts),
         offset_of!(FrameCounts, composite) as u64,
     );
-    let unit = unit as f32;
-    let params = composite::Params { origin, unit };
+    let [depth_offset, depth_scale] = map.map_or([0.0; 2], |map| map.factors());
+    let params = composite::Params {
+        origin,
+        unit: unit as f32,
+        depth_offset,
+        depth_scale,
+    };
     let buffers = (buffers, |storage| b.get(storage));
     draw.draw(pipelines, drawer, buffers, params, args);
 }

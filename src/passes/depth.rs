@@ -1,5 +1,5 @@
 //! Stage `depth`, only where a host asks for it, finds how deep each splat is in a pixel, on average of what the clip leaves
-//! of it. Tiles sum those depths beside the colours; where there are none, a draw blends them.
+//! of it. Tiles make expected and written depths of those, beside the colours; where there are no tiles, a draw blends them.
 
 use std::mem::offset_of;
 
@@ -15,13 +15,13 @@ use crate::passes::weight::Weight;
 use crate::passes::work::Work;
 use crate::passes::{clip, compact, cutoff, project, sort};
 use crate::types::FrameCounts;
-use rara_gpu::{Attachments, Drawer};
+use rara_gpu::{Attachments, DepthUse, Drawer};
 use rara_scene::depth::DepthMap;
 
 /// The splats' depths, behind the splats.
 pub(crate) static STAGE: Stage<EyePlan> = Stage {
     name: "depth",
-    needed: |plan| plan.way.expects_depth && plan.work != Work::Draw,
+    needed: |plan| plan.finds_depth() && plan.work != Work::Draw,
     missed: |_| false,
     memory: &[],
     record,
@@ -40,7 +40,10 @@ fn record(recording: &mut Recording<'_, '_, EyePlan>) {
 
 /// The draw of the depths as quads.
 pub(crate) fn draw(plan: &EyePlan, attachments: Attachments) -> Draw<splat_depth::Program> {
-    let depth = attachments.depth.is_some();
+    let depth = match attachments.depth {
+        Some(_) => DepthUse::Tested,
+        None => DepthUse::Ignored,
+    };
     let weight = Weight::from_plan(plan);
     let constants = splat_depth::Constants {
         boxes: !plan.needs_quads(),
@@ -51,7 +54,7 @@ pub(crate) fn draw(plan: &EyePlan, attachments: Attachments) -> Draw<splat_depth
         decay: weight.decay,
         miss: weight.miss,
         phi_form: weight.phi,
-        depth,
+        depth: depth == DepthUse::Tested,
     };
     let shaders = [&splat_depth::VERT, &splat_depth::FRAG];
     Draw::new(shaders, constants, attachments, depth)

@@ -56,8 +56,10 @@ pub(crate) struct Way {
     pub(crate) sh_format: ShFormat,
     /// Passes of the sort that the scene's bounds ask for, at least one.
     pub(crate) sort_passes: u32,
-    /// True when the splats' depths are wanted.
+    /// True when the pixels' expected depths are wanted.
     pub(crate) expects_depth: bool,
+    /// True when depths for the host's depth buffer are.
+    pub(crate) writes_depth: bool,
     /// Colours, or a debug view.
     pub(crate) show: Show,
     pub(crate) colours: SplatColours,
@@ -82,8 +84,10 @@ pub(crate) struct EyeFacts<'a> {
     pub(crate) redrawn: bool,
     /// The depth that hides splats of tiles, if they are wanted.
     pub(crate) occluders: Option<Occluders>,
-    /// True when the splats' depths are wanted.
+    /// True when the pixels' expected depths are wanted.
     pub(crate) expects_depth: bool,
+    /// The alpha of the pixels whose depths are written into the host's depth buffer, if any are.
+    pub(crate) write_alpha: Option<f32>,
     /// The camera of whose picture the frame shows a part; `None` where it shows all of it.
     pub(crate) whole: Option<&'a Camera>,
     pub(crate) colours: SplatColours,
@@ -102,6 +106,11 @@ impl EyePlan {
         // The laws take Phi; the target and the scene have formats of their own.
         let (_target, _sh, _phi, key_bits, beam_switch, transmittance_min) =
             settings.precision.fields();
+        if !(0.0..1.0).contains(&transmittance_min) {
+            return Err(Error::Invalid(format!(
+                "the least transmittance is {transmittance_min}; it must be 0 or more, and below 1"
+            )));
+        }
         let filled = || scene.layers.iter().filter(|layer| layer.gaussians() > 0);
         let alphas = filled().map(|layer| layer.training().alpha_max);
         let alpha_max = alphas.fold(1.0, f32::min);
@@ -115,6 +124,7 @@ impl EyePlan {
         };
         let is_tiled = eye.raster == Raster::Tiles;
         let occluders = eye.occluders.filter(|_| is_tiled);
+        let write_alpha = eye.write_alpha.filter(|_| is_tiled);
         Ok(Self {
             work: Work::Whole,
             way: Way {
@@ -122,6 +132,7 @@ impl EyePlan {
                 sh_format: scene.sh_format,
                 sort_passes: keys.passes(),
                 expects_depth: eye.expects_depth,
+                writes_depth: write_alpha.is_some(),
                 show: settings.show,
                 colours: match settings.show {
                     Show::Strongest => SplatColours::Numbers,
@@ -149,7 +160,14 @@ impl EyePlan {
                     by_distance: (order == SortBy::Distance).into(),
                     pad: [0; 3],
                 },
-                tiles: tiles_data(size, eye.span_runs, [transmittance_min, alpha_max])?,
+                tiles: TilesData {
+                    transmittance_min,
+                    alpha_max,
+                    // Pixels that are saturated do not fall any further.
+                    written_transmittance: write_alpha
+                        .map_or(-1.0, |alpha| (1.0 - alpha).max(transmittance_min)),
+                    ..tiles_data(size, eye.span_runs)
+                },
                 room: RoomData {
                     pair_capacity: eye.pair_capacity,
                     redrawn: eye.redrawn.into(),
@@ -163,18 +181,12 @@ impl EyePlan {
     }
 
     /// The same plan for another size of the picture, px, as far as buffers are concerned.
-    pub(crate) fn sized(&self, width: u32, height: u32) -> Result<Self> {
+    pub(crate) fn sized(&self, width: u32, height: u32) -> Self {
         let mut plan = self.clone();
-        let TilesData {
-            span_runs,
-            transmittance_min,
-            alpha_max,
-            ..
-        } = self.data.tiles;
         let size = vk::Extent2D { width, height };
-        plan.data.tiles = tiles_data(size, span_runs, [transmittance_min, alpha_max])?;
+        plan.data.tiles = tiles_data(size, self.data.tiles.span_runs);
         plan.data.view.size[..2].copy_from_slice(&[width as f32, height as f32]);
-        Ok(plan)
+        plan
     }
 
     pub(crate) fn gaussians(&self) -> u64 {
@@ -222,6 +234,11 @@ impl EyePlan {
 
     pub(crate) fn is_tiled(&self) -> bool {
         self.way.raster == Raster::Tiles
+    }
+
+    /// True when the splats' depths in their pixels are found.
+    pub(crate) fn finds_depth(&self) -> bool {
+        self.way.expects_depth || self.way.writes_depth
     }
 
     /// True when splats' rectangles of tiles are kept, and masks of their tiles only where these do not tell everything.
@@ -314,20 +331,11 @@ fn weight_data(cut: &CutPlan, settings: &Settings, switch: f32) -> Result<Weight
     })
 }
 
-/// The tiles of a picture.
-fn tiles_data(
-    size: vk::Extent2D,
-    span_runs: u32,
-    [saturated, alpha_max]: [f32; 2],
-) -> Result<TilesData> {
-    if !(0.0..1.0).contains(&saturated) {
-        return Err(Error::Invalid(format!(
-            "the least transmittance is {saturated}; it must be 0 or more, and below 1"
-        )));
-    }
+/// The tiles of a picture, however its pixels blend.
+fn tiles_data(size: vk::Extent2D, span_runs: u32) -> TilesData {
     let columns = size.width.div_ceil(limits::TILE_WIDTH);
     let rows = size.height.div_ceil(limits::TILE_HEIGHT);
-    Ok(TilesData {
+    TilesData {
         tile_columns: columns,
         tile_count: columns * rows,
         // There are as many invocations as the spans have. Each row has whole workgroups, whose invocations then have
@@ -336,10 +344,8 @@ fn tiles_data(
         row_parts: span_runs
             .div_ceil(rows)
             .next_multiple_of(limits::ROW_GROUP_SIZE),
-        transmittance_min: saturated,
-        alpha_max,
-        pad: [0; 2],
-    })
+        ..bytemuck::Zeroable::zeroed()
+    }
 }
 
 #[cfg(test)]

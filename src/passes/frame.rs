@@ -7,6 +7,7 @@ use bytemuck::{bytes_of, cast_slice};
 use smallvec::SmallVec;
 
 use crate::passes::buffers::Buffers;
+use crate::passes::composite::Part;
 use crate::passes::cut_plan::CutPlan;
 use crate::passes::eye_plan::EyePlan;
 use crate::passes::owner::Owner;
@@ -224,12 +225,15 @@ impl EyePlan {
             need(splat::draw(self, targets.colour).key());
         }
         if self.is_drawn && self.is_tiled() {
-            need(composite::draw(self, targets).key());
+            need(composite::draw(self, targets, Part::Colours).key());
+        }
+        if self.is_tiled() && self.way.writes_depth {
+            need(composite::draw(self, targets, Part::WrittenDepth).key());
         }
         if let Some(attachments) = targets.expected_depth {
             need(depth::draw(self, attachments).key());
             if self.is_tiled() {
-                need(composite::draw_depth(attachments).key());
+                need(composite::draw(self, targets, Part::ExpectedDepth(attachments)).key());
             }
         }
     }

@@ -5,7 +5,7 @@ use bytemuck::{Pod, Zeroable};
 use crate::passes::pipelines::{Draw, Pipelines};
 use crate::passes::shaders::lines;
 use rara_base::error::Result;
-use rara_gpu::{Attachments, Bindings, Buffer, BufferDesc, Device, Drawer, Location};
+use rara_gpu::{Attachments, Bindings, Buffer, BufferDesc, DepthUse, Device, Drawer, Location};
 
 /// A line in the picture, as `glsl/lines.vert` reads it.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
@@ -95,5 +95,10 @@ impl Lines {
 }
 
 fn draw(attachments: Attachments) -> Draw<lines::Program> {
-    Draw::new([&lines::VERT, &lines::FRAG], (), attachments, false)
+    Draw::new(
+        [&lines::VERT, &lines::FRAG],
+        (),
+        attachments,
+        DepthUse::Ignored,
+    )
 }

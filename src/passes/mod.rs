@@ -50,6 +50,7 @@ mod work;
 mod working;
 
 pub(crate) use buffers::{Buffers, Spare};
+pub(crate) use composite::Part;
 pub(crate) use cut_plan::{CutPlan, SceneFacts};
 pub(crate) use eye_plan::{EyeFacts, EyePlan};
 pub(crate) use frame::{DRAW, record, record_cut};

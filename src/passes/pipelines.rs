@@ -13,8 +13,8 @@ use crate::passes::shaders::{
 };
 use rara_base::error::Result;
 use rara_gpu::{
-    Attachments, Bindings, Buffer, ComputeDesc, ComputePipeline, Device, Drawer, GraphicsDesc,
-    GraphicsPipeline, Groups, Recorder, Shader,
+    Attachments, Bindings, Buffer, ComputeDesc, ComputePipeline, DepthUse, Device, Drawer,
+    GraphicsDesc, GraphicsPipeline, Groups, Recorder, Shader,
 };
 
 /// A pipeline's identity: its shaders, their constants, and what it draws into.
@@ -24,8 +24,8 @@ pub(crate) struct PipelineKey {
     name: &'static str,
     shader: Identity,
     constants: ConstantList,
-    /// A draw also has a fragment shader, attachments, and whether it tests the host's depth.
-    draw: Option<(Identity, Attachments, bool)>,
+    /// A draw also has a fragment shader, attachments, and a use for the host's depth.
+    draw: Option<(Identity, Attachments, DepthUse)>,
 }
 
 /// A shader, compared by where it is.
@@ -122,13 +122,13 @@ impl<P: Interface> Draw<P> {
         [front, fragment]: [&'static Shader; 2],
         constants: P::Constants,
         attachments: Attachments,
-        depth_test: bool,
+        depth: DepthUse,
     ) -> Self {
         let key = PipelineKey {
             name: P::NAME,
             shader: Identity(front),
             constants: constants.list(),
-            draw: Some((Identity(fragment), attachments, depth_test)),
+            draw: Some((Identity(fragment), attachments, depth)),
         };
         Self {
             key,
@@ -237,7 +237,7 @@ impl PipelineKey {
         let made = match (self.compute_desc(bindings), self.draw) {
             (Some(desc), _) => AnyPipeline::Compute(ComputePipeline::new(device, &desc)?),
             (None, draw) => {
-                let (Identity(fragment), attachments, depth_test) =
+                let (Identity(fragment), attachments, depth) =
                     draw.expect("what computes nothing draws");
                 let desc = GraphicsDesc {
                     name: self.name,
@@ -245,8 +245,8 @@ impl PipelineKey {
                     fragment,
                     constants: &self.constants,
                     attachments,
-                    depth_test,
-                    blend: Some(OVER),
+                    depth,
+                    blend: (depth != DepthUse::Written).then_some(OVER),
                     topology: vk::PrimitiveTopology::TRIANGLE_STRIP,
                     bindings,
                 };

@@ -18,12 +18,12 @@ pub(crate) static STAGE: Stage<EyePlan> = Stage::when_finding_view("project", &[
 
 memory! { EyePlan:
     /// As they lie in glsl/splats.glsl: with pipelines for GPUs some of their numbers apart, four splats to a vector, and where
-    /// depths are expected what makes those behind.
+    /// depths are found what makes those behind.
     splats: |plan| {
         let whole = plan.gaussians() * size_of::<Splat>() as u64;
         let apart = plan.gaussians().div_ceil(4) * 16;
         match plan.cut.shape {
-            _ if plan.way.expects_depth => whole + apart + plan.gaussians() * size_of::<SplatDepth>() as u64,
+            _ if plan.finds_depth() => whole + apart + plan.gaussians() * size_of::<SplatDepth>() as u64,
             DeviceShape::Cpu => whole,
             DeviceShape::Gpu { .. } => whole + apart,
         }

@@ -13,7 +13,7 @@ use crate::passes::storage::buffers;
 use crate::passes::weight::{self, Weight};
 use crate::passes::{cutoff, project, shared, sort};
 use crate::types::FrameCounts;
-use rara_gpu::{Attachments, Drawer};
+use rara_gpu::{Attachments, DepthUse, Drawer};
 use rara_scene::depth::DepthMap;
 use rara_scene::settings::Raster;
 
@@ -25,7 +25,10 @@ pub(crate) fn draw(plan: &EyePlan, attachments: Attachments) -> Draw<splat::Prog
         Raster::Mesh => [&splat::FLAT_MESH, &splat::FRAG],
         _ => [&splat::VERT, &splat::FRAG],
     };
-    let depth = attachments.depth.is_some();
+    let depth = match attachments.depth {
+        Some(_) => DepthUse::Tested,
+        None => DepthUse::Ignored,
+    };
     let weight = Weight::from_plan(plan);
     let constants = splat::Constants {
         clip_mode: weight.mode,
@@ -35,7 +38,7 @@ pub(crate) fn draw(plan: &EyePlan, attachments: Attachments) -> Draw<splat::Prog
         decay: weight.decay,
         miss: weight.miss,
         phi_form: weight.phi,
-        depth,
+        depth: depth == DepthUse::Tested,
         boxes: !plan.needs_quads(),
         show: weight::show_code(plan.way.show),
     };

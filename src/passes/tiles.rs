@@ -27,19 +27,20 @@ pub(crate) static STAGE: Stage<EyePlan> = Stage {
 };
 
 memory! { EyePlan:
-    /// The picture that the tiles make, and behind it the expected depths of its pixels, two of them to a vector.
-    tile_picture: |plan| plan.when_tiled(plan.pixels() * plan.way.tile_pixels.bytes() + expected_depths(plan)),
+    /// The picture that the tiles make, behind it the expected depths of its pixels, two of them to a vector, and behind those
+    /// the depths for the host's depth buffer, four to a vector.
+    tile_picture: |plan| plan.when_tiled(plan.pixels() * plan.way.tile_pixels.bytes() + depths(plan)),
         in EyePlan::picture_location;
     /// The host's depth; empty where it hides nothing.
     occluders: |plan| plan.occluders.map_or(0, |_| plan.when_tiled(4 * plan.pixels()));
 }
 
-/// The bytes of the expected depths, where there are such.
-fn expected_depths(plan: &EyePlan) -> u64 {
-    match plan.way.expects_depth {
-        true => plan.pixels().div_ceil(2) * 16,
-        false => 0,
-    }
+/// The bytes of the depths of all pixels, as far as such are found.
+fn depths(plan: &EyePlan) -> u64 {
+    let found = [(plan.way.expects_depth, 2), (plan.way.writes_depth, 4)];
+    let vectors = found
+        .map(|(is_found, to_a_vector)| u64::from(is_found) * plan.pixels().div_ceil(to_a_vector));
+    16 * vectors.iter().sum::<u64>()
 }
 
 /// The tiles that a dispatch draws: all, or with the pipelines for GPUs one of the two lists of those that hold anything.
@@ -87,6 +88,7 @@ fn pipeline(plan: &EyePlan, list: List) -> Pipeline<tiles::Program> {
         pixels: plan.way.tile_pixels.code(),
         listed: list != List::All,
         expected_depth: plan.way.expects_depth,
+        written_depth: plan.way.writes_depth,
     };
     let shader = if work.subgroups {
         &tiles::SUBGROUP_COMP

@@ -180,8 +180,44 @@ pub fn expected<'a, T: Real>(
     clip: &Clip,
     settings: &Settings,
 ) -> Vec<[f64; 2]> {
-    let scene = scene.into();
-    let layers = layer::layers(&scene, camera, clip);
+    let mut pixels = vec![[0.0; 2]; (camera.width * camera.height) as usize];
+    for_each_depth::<T>(&scene.into(), camera, clip, settings, |at, alpha, depth| {
+        let [sum, coverage] = &mut pixels[at];
+        let part = (1.0 - *coverage) * alpha;
+        *sum += part * depth;
+        *coverage += part;
+    });
+    pixels
+}
+
+/// A picture of the depths of the splats with which the pixels reach an alpha, front to back; `None` where they stay below.
+pub fn reaching<'a, T: Real>(
+    scene: impl Into<Scene<'a>>,
+    camera: &Camera,
+    clip: &Clip,
+    settings: &Settings,
+    least: f64,
+) -> Vec<Option<f64>> {
+    let mut pixels = vec![(0.0, None); (camera.width * camera.height) as usize];
+    for_each_depth::<T>(&scene.into(), camera, clip, settings, |at, alpha, depth| {
+        let (coverage, reached) = &mut pixels[at];
+        *coverage += (1.0 - *coverage) * alpha;
+        if *coverage >= least {
+            reached.get_or_insert(depth);
+        }
+    });
+    pixels.into_iter().map(|(_, reached)| reached).collect()
+}
+
+/// Calls a function with the number of a pixel, and the alpha and depth there of a splat, for all splats front to back.
+fn for_each_depth<T: Real>(
+    scene: &Scene<'_>,
+    camera: &Camera,
+    clip: &Clip,
+    settings: &Settings,
+    mut see: impl FnMut(usize, f64, f64),
+) {
+    let layers = layer::layers(scene, camera, clip);
     let sides: Vec<_> = layers
         .iter()
         .map(|layer| super::sides(layer, settings))
@@ -195,7 +231,6 @@ pub fn expected<'a, T: Real>(
         }
     }
     let [width, height] = [camera.width, camera.height];
-    let mut pixels = vec![[0.0; 2]; (width * height) as usize];
     for splat in &splats {
         let footprint = &splat.footprint;
         let (layer, index) = places[splat.index as usize];
@@ -214,13 +249,10 @@ pub fn expected<'a, T: Real>(
                 };
                 let (dx, dy) = (offset(x, 0), offset(y, 1));
                 if let Some(alpha) = splat::alpha(splat, dx, dy, settings.decay_law()) {
-                    let [sum, coverage] = &mut pixels[(y * width + x) as usize];
-                    let part = (1.0 - *coverage) * alpha.wide();
-                    *sum += part * depth.mean(dx, dy).wide();
-                    *coverage += part;
+                    let at = (y * width + x) as usize;
+                    see(at, alpha.wide(), depth.mean(dx, dy).wide());
                 }
             }
         }
     }
-    pixels
 }

@@ -12,6 +12,8 @@ pub(super) struct Targets {
     /// True when splats are tested against a depth that tiles cannot read.
     pub(super) hidden: bool,
     pub(super) multisampled: bool,
+    /// True when the splats' depths are written into the host's depth buffer.
+    pub(super) written: bool,
     /// True when colours become linear light, or are stored, once splats are blended.
     pub(super) converted: bool,
 }
@@ -45,7 +47,14 @@ pub(super) fn raster(
                 settings.show
             )));
         }
-        Raster::Auto if needs_tiles => (Raster::Tiles, "only tiles show what is asked for"),
+        _ if targets.written && !can_tile => {
+            return Err(Error::Invalid(
+                "only tiles can write depths (DepthDesc::write_alpha); use Raster::Auto or Raster::Tiles".into(),
+            ));
+        }
+        Raster::Auto if needs_tiles || targets.written => {
+            (Raster::Tiles, "only tiles show what is asked for")
+        }
         Raster::Mesh if !support.mesh_shader => {
             return Err(Error::Device(
                 "this device has no mesh shaders (VK_EXT_mesh_shader); use --raster quad".into(),

@@ -192,7 +192,8 @@ impl Renderer {
             let Err(error) = self.make_memory(request, &decision.plan) else {
                 return Ok(decision);
             };
-            let (has_lists, can_be_quads) = (decision.plan.is_tiled(), !decision.needs_tiles);
+            let has_lists = decision.plan.is_tiled();
+            let can_be_quads = !decision.needs_tiles && !self.writes_depth();
             let budget = self.device.memory_budget();
             match self.pairs.retry(error, budget, has_lists, can_be_quads)? {
                 Retry::Smaller => {}
@@ -257,11 +258,19 @@ impl Renderer {
         let targets = choose::Targets {
             tiles,
             hidden: self.desc.depth.is_some_and(|depth| !depth.readable),
+            written: self.writes_depth(),
             converted: targets.convert(settings.show),
             multisampled: self.desc.samples != vk::SampleCountFlags::TYPE_1,
         };
         let device = &self.device;
         choose::raster(settings, device.support(), device.shape(), targets)
+    }
+
+    /// True when tiles find depths for the host's depth buffer.
+    fn writes_depth(&self) -> bool {
+        self.desc
+            .depth
+            .is_some_and(|depth| depth.write_alpha.is_some())
     }
 
     /// The map from a depth in the scene's units to the host's depth buffer.
@@ -301,6 +310,7 @@ impl Renderer {
                 .zip(depth_map)
                 .map(|(depth, map)| Occluders::new(depth.format, map)),
             expects_depth: self.desc.expected_depth.is_some(),
+            write_alpha: readable.and_then(|depth| depth.write_alpha),
             whole: None,
             colours: SplatColours::Scene,
         }

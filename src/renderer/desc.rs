@@ -62,8 +62,8 @@ setters! {
     }
 }
 
-/// The host's depth attachment. Splats behind its depths are hidden, and none is written into it. A splat has one depth in
-/// all of its pixels: that of its centre, by which splats are ordered. Opaque things are drawn first, then splats.
+/// The host's depth attachment. Splats behind its depths are hidden. A splat is hidden in all of its pixels by one depth:
+/// that of its centre, by which splats are ordered. Opaque things are drawn first, then splats.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct DepthDesc {
@@ -77,11 +77,19 @@ pub struct DepthDesc {
     /// True when the host gives each frame's depth to [`Renderer::prepare`](super::Renderer::prepare),
     /// before its scope. Tiles need that; without it they are replaced by quads.
     pub readable: bool,
+    /// An alpha above 0 and at most 1 from which a pixel's depth is written, so that what the host draws later meets the splats
+    /// and the cut through them; `None` where no depth is. Draws write the depth of the splat with which the pixel's alpha
+    /// reaches so much, front to back: the mean, on the pixel's line of sight, of what the clip leaves of it, as in
+    /// [`draw_depth`](super::Renderer::draw_depth). Pixels that stay below keep the host's depth, as do those whose depth is
+    /// nearer. It needs `readable` and tiles; a frame whose tiles have no room ([`fell_back`](super::Renderer::fell_back))
+    /// shows its colours and writes no depths. In the host's scope the attachment can be written.
+    pub write_alpha: Option<f32>,
 }
 
 setters!(DepthDesc {
     stencil: bool,
     readable: bool,
+    write_alpha: Option<f32>,
 });
 
 /// The target of expected depths.
@@ -114,6 +122,7 @@ impl DepthDesc {
             stencil: false,
             map,
             readable: false,
+            write_alpha: None,
         }
     }
 }
@@ -216,6 +225,21 @@ impl RendererDesc {
                  sample; without it splats are drawn as quads, whose samples are tested each"
                     .into(),
             ));
+        }
+        match depth.write_alpha {
+            Some(alpha) if !(alpha > 0.0 && alpha <= 1.0) => {
+                return Err(Error::Invalid(format!(
+                    "DepthDesc::write_alpha is {alpha}; it must be above 0 and at most 1"
+                )));
+            }
+            Some(_) if !depth.readable => {
+                return Err(Error::Invalid(
+                    "DepthDesc::write_alpha is set without DepthDesc::readable: tiles find the depths, and need the \
+                     host's own before its scope"
+                        .into(),
+                ));
+            }
+            _ => {}
         }
         let name = &device.info().name;
         let as_depth = vk::FormatFeatureFlags::DEPTH_STENCIL_ATTACHMENT;

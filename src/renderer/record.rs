@@ -7,7 +7,7 @@ use ash::vk;
 use super::frame::{FrameCut, FrameState};
 use super::{ConfiguredFrame, PreparedFrame, Renderer, out_of_order};
 use crate::passes::{
-    self, CutResources, EyeResources, PreviousFrame, SceneBuffers, Work, composite, tiles,
+    self, CutResources, EyeResources, Part, PreviousFrame, SceneBuffers, Work, composite, tiles,
 };
 use rara_base::error::Result;
 use rara_gpu::{DepthImage, Drawer, Recorder};
@@ -122,7 +122,8 @@ impl Renderer {
     }
 
     /// Records the splats, or the picture that the tiles have made of them, inside the host's rendering scope, blended
-    /// `over` what is there: premultiplied colours, the same for all samples of a pixel. `origin` is the upper left corner
+    /// `over` what is there: premultiplied colours, the same for all samples of a pixel. Where
+    /// [`DepthDesc::write_alpha`](crate::DepthDesc::write_alpha) is set, their depths follow. `origin` is the upper left corner
     /// of the camera's picture in the attachment, whole px, where row 0 of the attachment is the upper one. This sets the
     /// viewport to that picture: the host's own, which may have a negative height, has no say in it. The host's scissor has.
     /// This may be recorded more than once for a frame.
@@ -158,8 +159,14 @@ impl Renderer {
             let frame = (plan, buffers);
             passes::splat::record(drawer, pipelines, frame, targets.colour, origin, map);
             if plan.is_tiled() {
-                let picture = (composite::draw(plan, targets), buffers);
-                composite::record(drawer, pipelines, picture, origin, 1.0);
+                let mut composite = |part| {
+                    let draw = (composite::draw(plan, targets, part), buffers);
+                    composite::record(drawer, pipelines, draw, origin, (map, 1.0));
+                };
+                composite(Part::Colours);
+                if plan.way.writes_depth {
+                    composite(Part::WrittenDepth);
+                }
             }
         });
         Ok(())
@@ -206,8 +213,9 @@ impl Renderer {
             let map = (decision.depth_map, decision.unit);
             passes::depth::record_draw(drawer, pipelines, frame, attachments, origin, map);
             if plan.is_tiled() {
-                let depths = (composite::draw_depth(attachments), buffers);
-                composite::record(drawer, pipelines, depths, origin, decision.unit);
+                let part = Part::ExpectedDepth(attachments);
+                let depths = (composite::draw(plan, decision.targets, part), buffers);
+                composite::record(drawer, pipelines, depths, origin, map);
             }
         });
         Ok(())

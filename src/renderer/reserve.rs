@@ -218,7 +218,7 @@ fn of_lower_pictures(plan: &EyePlan) -> Result<Sizes<EyePlan>> {
     let [width, height] = plan.size().map(|side| side as u32);
     let mut sizes = Sizes::new(plan);
     for rows in 1..height.div_ceil(limits::TILE_HEIGHT) {
-        let lower = plan.sized(width, rows * limits::TILE_HEIGHT)?;
+        let lower = plan.sized(width, rows * limits::TILE_HEIGHT);
         sizes = sizes.or(&Sizes::new(&lower));
     }
     Ok(sizes)

@@ -33,6 +33,7 @@ fn plan(mode: Mode, planes: usize) -> EyePlan {
         redrawn: false,
         occluders: None,
         expects_depth: false,
+        write_alpha: None,
         whole: None,
         colours: SplatColours::Scene,
     };

@@ -222,6 +222,38 @@ impl Canvas {
             .collect()
     }
 
+    /// What the depth buffer holds after a frame, of 32-bit floats.
+    pub fn depths(&self) -> Vec<f32> {
+        assert_eq!(self.desc.depth, vk::Format::D32_SFLOAT);
+        let [readback, _] = self.readbacks();
+        let submitted = self.device.submit_and_wait(|cmd| {
+            let layers = vk::ImageSubresourceLayers::default()
+                .aspect_mask(vk::ImageAspectFlags::DEPTH)
+                .layer_count(1);
+            let region = vk::BufferImageCopy::default()
+                .image_subresource(layers)
+                .image_extent(self.desc.extent.into());
+            let (image, to) = (self.depth_image(0, 0).image, readback.handle());
+            let visible = [vk::MemoryBarrier2::default()
+                .src_stage_mask(vk::PipelineStageFlags2::ALL_TRANSFER)
+                .src_access_mask(vk::AccessFlags2::TRANSFER_WRITE)
+                .dst_stage_mask(vk::PipelineStageFlags2::HOST)
+                .dst_access_mask(vk::AccessFlags2::HOST_READ)];
+            let info = vk::DependencyInfo::default().memory_barriers(&visible);
+            // SAFETY: `cmd` is recording; the frame before left the image ready to be copied.
+            unsafe {
+                self.raw
+                    .cmd_copy_image_to_buffer(cmd, image, COPIED, to, &[region]);
+                self.raw.cmd_pipeline_barrier2(cmd, &info);
+            }
+            Ok(())
+        });
+        submitted.expect("submits");
+        let held = readback.mapped().chunks_exact(4).take(self.pixels());
+        held.map(|bytes| f32::from_ne_bytes(bytes.try_into().expect("four")))
+            .collect()
+    }
+
     /// The images that a frame leaves, if there are such attachments.
     fn colors(&self) -> [Option<&Image>; 2] {
         let first = self.resolved.as_ref().or(Some(&self.color));

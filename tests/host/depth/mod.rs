@@ -4,6 +4,7 @@
 mod expected;
 mod hidden;
 mod targets;
+mod written;
 
 use crate::canvas::{Canvas, CanvasDesc, Frame};
 use crate::common;

@@ -14,7 +14,7 @@ use crate::settings::{self, RaraSettings};
 /// A cut is what a clip keeps of a scene. It is found once for any number of eyes: renderers, each with a size, targets and
 /// formats of its own, and pickers. rara_cut_configure says which clip cuts which scene, and rara_cut_prepare records the
 /// commands that find what is kept. rara_renderer_configure_cut and rara_picker_record_cut then take the cut in place of a clip.
-/// One thread at a time changes it.
+/// Calls of several threads take turns.
 ///
 /// The cut has the settings mode, trace_all and, where the mode is RARA_MODE_RARA, sigma; each eye has all others. The states and
 /// clips of the layers are as they were when the cut was configured. A camera's own near and far planes would cut as well, so that

@@ -1,11 +1,12 @@
 //! Handles: numbers that C sees as pointers, and that are never followed. None is given out twice, so that one that was
-//! destroyed is known by its number, as is one of another kind, and one that another thread changes at the same time.
+//! destroyed is known by its number, as is one of another kind. Calls that would disturb each other take turns.
 
 use std::any::{Any, TypeId, type_name};
 use std::collections::HashMap;
 use std::ops::{Deref, DerefMut};
 use std::ptr::without_provenance_mut;
-use std::sync::{Arc, LazyLock, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Condvar, LazyLock, Mutex, MutexGuard, PoisonError};
+use std::thread::{self, ThreadId};
 
 use rara::{Error, Result};
 
@@ -19,9 +20,23 @@ type Object = Arc<dyn Any + Send + Sync>;
 struct Handles {
     /// The number that was given out last.
     last: usize,
-    /// The objects by their numbers, with their kind; `None` while a thread has the object to itself.
-    objects: HashMap<usize, (TypeId, Option<Object>)>,
+    /// The objects by their numbers.
+    objects: HashMap<usize, Place>,
 }
+
+/// The place of an object.
+struct Place {
+    kind: TypeId,
+    /// `None` while a thread has the object to itself.
+    object: Option<Object>,
+    /// That thread.
+    taken_by: Option<ThreadId>,
+    /// How many calls use the object beside each other.
+    users: usize,
+}
+
+/// Tells those who wait for an object that a call has ended.
+static ENDED: Condvar = Condvar::new();
 
 /// Numbers are as far apart as what memory is allocated in, as C expects of pointers.
 const STEP: usize = 16;
@@ -54,10 +69,13 @@ pub(crate) fn add<T: Send + Sync + 'static>(object: T) -> Result<*mut T> {
         ));
     };
     handles.last = number;
-    let kind = TypeId::of::<T>();
-    handles
-        .objects
-        .insert(number, (kind, Some(Arc::new(object))));
+    let place = Place {
+        kind: TypeId::of::<T>(),
+        object: Some(Arc::new(object)),
+        taken_by: None,
+        users: 0,
+    };
+    handles.objects.insert(number, place);
     Ok(without_provenance_mut(number))
 }
 
@@ -69,48 +87,90 @@ pub(crate) fn destroy<T: Send + Sync + 'static>(handle: *mut T) -> RaraResult {
             return Ok(());
         }
         let mut handles = handles();
-        if let Some((kind, _)) = handles.objects.get(&handle.addr()) {
-            check_kind::<T>(*kind, "the handle")?;
+        if let Some(place) = handles.objects.get(&handle.addr()) {
+            check_kind::<T>(place.kind, "the handle")?;
         }
         let Some(ended) = handles.objects.remove(&handle.addr()) else {
             return not_alive::<T, _>("the handle");
         };
         // What ends with it may call the host, which may come back here.
         drop(handles);
+        ENDED.notify_all();
         drop(ended);
         Ok(())
     })
 }
 
-/// What a handle stands for, to be used beside others that use it.
-pub(crate) fn alive<T: Send + Sync + 'static>(handle: *const T, name: &str) -> Result<Arc<T>> {
-    find(handle, name, &mut handles())
-        .cloned()?
-        .downcast()
-        .or_else(|_| not_alive::<T, _>(name))
+/// What a handle stands for, to be used beside others that use it. It waits for a call of another thread that changes it.
+pub(crate) fn alive<T: Send + Sync + 'static>(
+    handle: *const T,
+    name: &str,
+) -> Result<SharedHandle<T>> {
+    let mut handles = wait_for(handle, name, |_| true)?;
+    let place = handles.place(handle.addr());
+    place.users += 1;
+    let object = place.object.clone().expect("nobody has it to himself");
+    Ok(SharedHandle {
+        object: Some(of_its_kind(object)),
+        number: handle.addr(),
+    })
 }
 
-/// What a handle stands for, to be changed by one thread that has it to itself meanwhile.
+/// What a handle stands for, to be changed by one thread that has it to itself meanwhile. It waits for the calls of other
+/// threads that use it.
 pub(crate) fn alone<T: Send + Sync + 'static>(
     handle: *mut T,
     name: &str,
 ) -> Result<ExclusiveHandle<T>> {
-    let mut handles = handles();
-    find(handle, name, &mut handles)?;
-    let place = handles.objects.get_mut(&handle.addr());
-    let object = place.and_then(|(_, object)| object.take());
-    let object = object.expect("it was found").downcast::<T>();
-    let mut object = object.unwrap_or_else(|_| unreachable!("its kind was checked"));
-    if Arc::get_mut(&mut object).is_some() {
-        let number = handle.addr();
-        return Ok(ExclusiveHandle {
-            object: Some(object),
-            number,
-        });
+    let mut handles = wait_for(handle, name, |place| place.users == 0)?;
+    let place = handles.place(handle.addr());
+    // Something else may have kept it.
+    let is_kept = place.object.as_mut().and_then(Arc::get_mut).is_none();
+    if is_kept {
+        return used_elsewhere(name);
     }
-    let kind = TypeId::of::<T>();
-    handles.objects.insert(handle.addr(), (kind, Some(object)));
-    used_elsewhere(name)
+    place.taken_by = Some(thread::current().id());
+    Ok(ExclusiveHandle {
+        object: place.object.take().map(of_its_kind),
+        number: handle.addr(),
+    })
+}
+
+/// Waits until a handle's object is in its place, and ready.
+fn wait_for<T: 'static>(
+    handle: *const T,
+    name: &str,
+    is_ready: impl Fn(&Place) -> bool,
+) -> Result<MutexGuard<'static, Handles>> {
+    if handle.is_null() {
+        return invalid(format!("{name} is null"));
+    }
+    let mut handles = handles();
+    loop {
+        let Some(place) = handles.objects.get(&handle.addr()) else {
+            return not_alive::<T, _>(name);
+        };
+        check_kind::<T>(place.kind, name)?;
+        if place.object.is_some() && is_ready(place) {
+            return Ok(handles);
+        }
+        if place.taken_by == Some(thread::current().id()) {
+            return used_elsewhere(name); // it would wait for itself
+        }
+        handles = ENDED.wait(handles).unwrap_or_else(PoisonError::into_inner);
+    }
+}
+
+impl Handles {
+    /// The place of a number that was found.
+    fn place(&mut self, number: usize) -> &mut Place {
+        self.objects.get_mut(&number).expect("it was found")
+    }
+}
+
+fn of_its_kind<T: Send + Sync + 'static>(object: Object) -> Arc<T> {
+    let object = object.downcast::<T>();
+    object.unwrap_or_else(|_| unreachable!("its kind was checked"))
 }
 
 /// A number of what a handle stands for; 0 where it is null or not alive.
@@ -125,6 +185,41 @@ pub(crate) fn number<T: Send + Sync + 'static, N: Default>(
         Ok(())
     });
     found
+}
+
+/// An object that is used beside others that use it, until this is dropped.
+#[derive(Debug)]
+pub(crate) struct SharedHandle<T: Send + Sync + 'static> {
+    /// `None` only while being dropped.
+    object: Option<Arc<T>>,
+    number: usize,
+}
+
+impl<T: Send + Sync> SharedHandle<T> {
+    /// The object, for longer than the call.
+    pub(crate) fn keep(self) -> Arc<T> {
+        self.object.clone().expect("taken only by drop")
+    }
+}
+
+impl<T: Send + Sync> Deref for SharedHandle<T> {
+    type Target = T;
+
+    fn deref(&self) -> &T {
+        self.object.as_ref().expect("taken only by drop")
+    }
+}
+
+impl<T: Send + Sync> Drop for SharedHandle<T> {
+    fn drop(&mut self) {
+        let mut handles = handles();
+        if let Some(place) = handles.objects.get_mut(&self.number) {
+            place.users -= 1;
+            self.object = None; // the place has it too
+        }
+        drop(handles);
+        ENDED.notify_all();
+    }
 }
 
 /// An object that one thread has to itself, until this is dropped.
@@ -154,31 +249,14 @@ impl<T: Send + Sync> Drop for ExclusiveHandle<T> {
         let object = self.object.take().map(|object| object as Object);
         // Its handle may have been destroyed meanwhile: then it goes now, when the lock is free again.
         let ended = match handles().objects.get_mut(&self.number) {
-            Some((_, place)) => std::mem::replace(place, object),
+            Some(place) => {
+                place.taken_by = None;
+                std::mem::replace(&mut place.object, object)
+            }
             None => object,
         };
+        ENDED.notify_all();
         drop(ended);
-    }
-}
-
-/// The object of a handle, if it is alive, of this kind, and nobody has it to itself.
-fn find<'a, T: 'static>(
-    handle: *const T,
-    name: &str,
-    handles: &'a mut Handles,
-) -> Result<&'a Object> {
-    if handle.is_null() {
-        return invalid(format!("{name} is null"));
-    }
-    match handles.objects.get(&handle.addr()) {
-        None => not_alive::<T, _>(name),
-        Some((kind, object)) => {
-            check_kind::<T>(*kind, name)?;
-            match object {
-                Some(object) => Ok(object),
-                None => used_elsewhere(name),
-            }
-        }
     }
 }
 
@@ -198,7 +276,7 @@ fn not_alive<T, R>(name: &str) -> Result<R> {
 
 fn used_elsewhere<R>(name: &str) -> Result<R> {
     invalid(format!(
-        "{name} is used by another call, which this one would disturb: let one thread at a time use it"
+        "{name} is used by this call already, or is part of something that is alive"
     ))
 }
 

@@ -88,7 +88,7 @@ impl RaraLayer {
     unsafe fn layer(&self, place: &str) -> Result<HostLayer> {
         let name = text(self.name, &format!("{place}.name"))?;
         let mut layer = HostLayer {
-            gaussians: alive(self.gaussians, &format!("{place}.gaussians"))?,
+            gaussians: alive(self.gaussians, &format!("{place}.gaussians"))?.keep(),
             name: name.to_owned(),
             state: LayerState::default(),
             clip: clip::clip(self.clip, &format!("{place}.clip"))?,

@@ -13,7 +13,7 @@ use crate::renderer::RaraRenderer;
 use crate::scene::RaraSceneBuffers;
 use crate::settings::{self, RaraSettings};
 
-/// Finds the Gaussians that pixels show most of. One thread at a time uses it.
+/// Finds the Gaussians that pixels show most of. Calls of several threads take turns.
 pub struct RaraPicker(Picker);
 
 /// A request that a picker has recorded. It never grows.

@@ -9,7 +9,7 @@ use crate::device::RaraDevice;
 use crate::handles::{alive, alone, create, destroy};
 use crate::renderer_desc::{RaraRendererDesc, renderer_desc};
 
-/// Draws scenes into the host's rendering scopes. One thread at a time uses it.
+/// Draws scenes into the host's rendering scopes. Calls of several threads take turns.
 ///
 /// A frame is three calls: rara_renderer_configure allocates and compiles what is new, and makes the frame;
 /// rara_renderer_prepare records its compute stages, outside any rendering scope; rara_renderer_draw records its splats

@@ -57,17 +57,37 @@ fn another_kind_of_handle_is_refused() {
 }
 
 #[test]
-fn what_one_call_changes_no_other_uses() {
+fn what_one_call_changes_others_wait_for() {
     let handle = add(Ball(1)).expect("a number");
     let shared = [alive(handle, "ball"), alive(handle, "ball")];
-    refused(alone(handle, "ball"), "ball is used by another call");
+    let number = handle.addr();
+    let waits = || {
+        std::thread::spawn(move || {
+            let handle = without_provenance_mut::<Ball>(number);
+            alone(handle, "ball").expect("the others end").0 += 1;
+        })
+    };
+    let threads: Vec<_> = (0..4).map(|_| waits()).collect();
+    assert!(
+        shared
+            .iter()
+            .all(|ball| ball.as_ref().is_ok_and(|ball| ball.0 == 1))
+    );
     drop(shared);
+    for thread in threads {
+        thread.join().expect("it was not refused");
+    }
     let mut changed = alone(handle, "ball").expect("nobody uses it");
+    assert_eq!(*changed, Ball(5));
     changed.0 = 2;
-    refused(alive(handle, "ball"), "ball is used by another call");
-    refused(alone(handle, "ball"), "ball is used by another call");
+    // The same thread would wait for itself.
+    refused(alive(handle, "ball"), "ball is used by this call already");
+    refused(alone(handle, "ball"), "ball is used by this call already");
     drop(changed);
-    assert_eq!(*alive(handle, "ball").expect("is alive"), Ball(2));
+    let kept = alive(handle, "ball").expect("is alive").keep();
+    refused(alone(handle, "ball"), "part of something that is alive");
+    assert_eq!(*kept, Ball(2));
+    drop(kept);
     // A panic while it is changed leaves it to others.
     let panicked = std::panic::catch_unwind(|| {
         let mut changed = alone(handle, "ball").expect("nobody uses it");
@@ -90,7 +110,10 @@ fn an_object_lives_until_its_last_call_ends() {
     }
     for (gone, changes) in [(1, false), (2, true)] {
         let handle = add(Counted).expect("a number");
-        let used: (Option<Arc<Counted>>, Option<ExclusiveHandle<Counted>>) = match changes {
+        let used: (
+            Option<SharedHandle<Counted>>,
+            Option<ExclusiveHandle<Counted>>,
+        ) = match changes {
             true => (None, alone(handle, "counted").ok()),
             false => (alive(handle, "counted").ok(), None),
         };

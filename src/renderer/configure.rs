@@ -58,9 +58,12 @@ impl Renderer {
         self.take_over(request.kept, decision.scene, &mut decision.plan)?;
         let (targets, plan) = (decision.targets, &decision.plan);
         let buffers = self.memory.buffers().clone();
-        let cut = match request.kept {
-            Kept::Clip(_) => FrameCut::Own(self.cut.memory.buffers().clone()),
-            Kept::Cut(cut) => FrameCut::Seen(cut.configured_with(request.scene)?.seen.clone()),
+        let (cut, awaits) = match request.kept {
+            Kept::Clip(_) => (FrameCut::Own(self.cut.memory.buffers().clone()), None),
+            Kept::Cut(cut) => {
+                let cut = cut.configured_with(request.scene)?;
+                (FrameCut::Seen(cut.seen.clone()), Some(cut.awaited.clone()))
+            }
         };
         // An earlier frame may have made the buffers larger than this one needs.
         let of_cut = cut.buffers().sizes().largest();
@@ -78,6 +81,7 @@ impl Renderer {
             },
             prepared: self.frames.prepared(),
             pending: self.pending.clone(),
+            _awaits: awaits,
         };
         self.note_frame(&frame);
         Ok(frame)

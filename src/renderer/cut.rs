@@ -1,5 +1,6 @@
 //! A cut is what a clip keeps of a scene. It has memory of its own.
 
+use std::collections::VecDeque;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -65,7 +66,8 @@ pub struct Cut {
     placement: Placement,
     pipelines: SharedPipelines,
     state: CutState,
-    configured: Option<ConfiguredCut>,
+    /// What it was configured with last, and before that what frames wait for that were configured earlier and are not prepared.
+    configured: VecDeque<ConfiguredCut>,
     /// The version of the cut whose commands were recorded last; 0 before any.
     recorded: Arc<AtomicU64>,
     frames_in_flight: u64,
@@ -80,6 +82,8 @@ pub(crate) struct ConfiguredCut {
     pub(super) plan: CutPlan,
     pub(super) seen: SeenCut,
     pipelines: Arc<Pipelines>,
+    /// Shared with the frames that show it and are not prepared.
+    pub(super) awaited: Arc<()>,
 }
 
 /// What the frame of an eye holds of a host's cut.
@@ -107,7 +111,7 @@ impl Cut {
             placement: renderer.placement,
             pipelines: renderer.pipelines.sharing(),
             state: CutState::default(),
-            configured: None,
+            configured: VecDeque::new(),
             recorded: Arc::default(),
             frames_in_flight: renderer.desc.frames_in_flight.into(),
             prepared: 0,
@@ -121,7 +125,7 @@ impl Cut {
     }
 
     /// Decides what is cut, and allocates and compiles what that needs and has not been needed before. A frame that was
-    /// configured before this call shows the cut as it was then, if it is prepared before the cut is prepared again.
+    /// configured before this call shows the cut as it was then, also where both are prepared after it.
     ///
     /// # Errors
     /// [`Error::Invalid`] for a clip that cuts nothing finite and for a scene of another device, [`Error::Memory`] and
@@ -135,7 +139,7 @@ impl Cut {
         check_device(scene, &self.device)?;
         let clip = clip.in_scene(&self.placement);
         let mut plan = CutPlan::new(scene.facts(self.device.shape()), None, &clip, settings)?;
-        if let Some(had) = &mut self.configured
+        if let Some(had) = self.configured.back_mut()
             && had.scene.id == scene.id
             && had.plan.is_like(&plan)
         {
@@ -152,15 +156,18 @@ impl Cut {
             self.state.found = None;
             memory.reserve(&self.device, (&plan, sizes), frames)?;
         }
-        plan.finds_sides &= !self.state.has_found(scene.id, &plan);
+        self.drop_unawaited();
+        // What is recorded before it leaves other sides.
+        let is_next = self.configured.iter().all(|had| had.seen.is_recorded());
+        plan.finds_sides &= !(is_next && self.state.has_found(scene.id, &plan));
         let buffers = self.state.memory.buffers().clone();
         let largest = buffers.sizes().largest().max(scene.largest());
         let bindings = choose::bindings(&self.device, self.bindings, largest);
         let needs = |need: &mut dyn FnMut(_)| plan.pipelines(need);
         self.pipelines.ensure(&self.device, bindings, &needs)?;
-        let version = self.configured.as_ref().map_or(0, |had| had.seen.version) + 1;
+        let version = self.configured.back().map_or(0, |had| had.seen.version) + 1;
         let recorded = self.recorded.clone();
-        self.configured = Some(ConfiguredCut {
+        self.configured.push_back(ConfiguredCut {
             scene: scene.clone(),
             plan,
             seen: SeenCut {
@@ -169,12 +176,14 @@ impl Cut {
                 recorded,
             },
             pipelines: self.pipelines.get(bindings).clone(),
+            awaited: Arc::default(),
         });
         Ok(())
     }
 
-    /// Records the commands that find what is kept, outside any rendering scope. Where they have been recorded since the cut
-    /// was configured, this records nothing. They begin with the barrier of [`Renderer::prepare`], and the eyes' commands wait
+    /// Records the commands that find what is kept, outside any rendering scope. As long as frames wait to be prepared that
+    /// were configured before the cut was configured anew, they are those of the cut as it was for the oldest of these. Where
+    /// they have been recorded already, this records nothing. They begin with the barrier of [`Renderer::prepare`], and the eyes' commands wait
     /// for them.
     ///
     /// # Safety
@@ -185,7 +194,8 @@ impl Cut {
     /// # Errors
     /// [`Error::Invalid`] before the cut is configured. Nothing is recorded then.
     pub unsafe fn prepare(&mut self, cmd: vk::CommandBuffer) -> Result<()> {
-        let Some(configured) = &self.configured else {
+        self.drop_unawaited();
+        let Some(configured) = self.configured.front() else {
             return Err(Error::Invalid(UNCONFIGURED.into()));
         };
         let ConfiguredCut {
@@ -193,6 +203,7 @@ impl Cut {
             plan,
             seen,
             pipelines,
+            ..
         } = configured;
         if seen.is_recorded() {
             return Ok(());
@@ -219,8 +230,15 @@ impl Cut {
     pub fn forget(&mut self) {
         self.state.found = None;
         self.recorded.store(0, Ordering::Relaxed);
-        if let Some(configured) = &mut self.configured {
+        for configured in &mut self.configured {
             configured.plan.finds_sides = configured.plan.clips();
+        }
+    }
+
+    /// Forgets what was configured before and no frame waits for any more.
+    fn drop_unawaited(&mut self) {
+        while self.configured.len() > 1 && Arc::strong_count(&self.configured[0].awaited) == 1 {
+            self.configured.pop_front();
         }
     }
 
@@ -231,7 +249,7 @@ impl Cut {
 
     /// The cut as it was configured, if it is of this scene.
     pub(super) fn configured_with(&self, scene: &SceneBuffers) -> Result<&ConfiguredCut> {
-        let Some(configured) = &self.configured else {
+        let Some(configured) = self.configured.back() else {
             return Err(Error::Invalid(UNCONFIGURED.into()));
         };
         match configured.scene.id == scene.id {

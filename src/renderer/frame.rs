@@ -17,6 +17,8 @@ pub struct ConfiguredFrame {
     pub(super) prepared: u64,
     /// Shared by the renderer, until it forgets those results, and all of its frames that are configured and not prepared.
     pub(super) pending: Arc<()>,
+    /// Shared by a host's cut as it was configured for the frame.
+    pub(super) _awaits: Option<Arc<()>>,
 }
 
 /// A frame that [`Renderer::prepare`](super::Renderer::prepare) has recorded and

@@ -275,6 +275,54 @@ fn eyes_of_one_cut_have_sizes_targets_and_formats_of_their_own() {
     });
 }
 
+/// A host that configures on one thread and records on another has the next frame's cut configured before this one's is recorded.
+#[test]
+fn frames_that_are_configured_ahead_show_their_own_cuts() {
+    with_eyes(1, |eyes| {
+        let mut renderer = Renderer::new(eyes.device, desc().frames_in_flight(2)).expect("one");
+        let mut cut = Cut::new(&renderer);
+        let [camera, _] = &eyes.cameras;
+        let settings = raster(Raster::Tiles);
+        let clips = [eyes.clip.clone(), Clip::default(), eyes.clip.clone()];
+        // One more than are prepared: a frame that is dropped holds nothing up.
+        let frames = [0, 1, 2, 1].map(|at| {
+            let configured = cut.configure(&eyes.scene, &clips[at], &settings);
+            configured.expect("a cut");
+            let frame = renderer.configure(&eyes.scene, camera, &cut, &settings);
+            frame.expect("configures")
+        });
+        let [one, two, three, four] = frames;
+        drop(three);
+        let pictures = [one, two, four].map(|frame| {
+            let both = RefCell::new((&mut renderer, &mut cut, Some(frame), None));
+            let [pixels, _] = eyes.canvas.draw(
+                |cmd| {
+                    let (renderer, cut, frame, prepared) = &mut *both.borrow_mut();
+                    let frame = frame.take().expect("once");
+                    // SAFETY: recording outside a scope, and all is waited for.
+                    let made = unsafe {
+                        cut.prepare(cmd).expect("records");
+                        renderer.prepare(cmd, &eyes.scene, None, frame)
+                    };
+                    *prepared = Some(made.expect("prepares"));
+                },
+                |cmd| {
+                    let (renderer, _, _, prepared) = &mut *both.borrow_mut();
+                    eyes.canvas.viewport(cmd, 0, 0, SIZE);
+                    let prepared = prepared.as_ref().expect("it was prepared");
+                    // SAFETY: inside the scope of the canvas that the renderer was made for.
+                    unsafe { renderer.draw(cmd, [0.0; 2], prepared) }.expect("draws");
+                },
+            );
+            part(&pixels, 0)
+        });
+        let [clipped, whole, again] = &pictures;
+        let worst = apart(clipped, &eyes.truth[0].pixels, 0.0);
+        assert!(worst < 1.0, "{worst}/255");
+        assert!(whole == again && whole != clipped);
+    });
+}
+
 #[test]
 fn frames_of_a_cut_that_is_not_theirs_are_refused() {
     let gaussians = generate(Kind::General, 300, 5);
@@ -303,8 +351,11 @@ fn frames_of_a_cut_that_is_not_theirs_are_refused() {
             cut.configure(&scene, &two, &usual)?;
             // SAFETY: the same.
             unsafe { cut.prepare(cmd)? };
+            let moved = renderer.configure(&scene, &camera, &cut, &usual)?;
             // SAFETY: the same.
-            say(unsafe { renderer.prepare(cmd, &scene, None, frame) }.expect_err("it has moved"));
+            say(unsafe { renderer.prepare(cmd, &scene, None, moved) }.expect_err("not its turn"));
+            // SAFETY: the same.
+            unsafe { renderer.prepare(cmd, &scene, None, frame) }?;
             let sectioned = camera.clip_near(Some(1.0));
             say(renderer
                 .configure(&scene, &sectioned, &cut, &usual)

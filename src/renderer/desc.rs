@@ -75,7 +75,8 @@ pub struct DepthDesc {
     /// [`Renderer::set_depth_map`](super::Renderer::set_depth_map) changes it from frame to frame.
     pub map: DepthMap,
     /// True when the host gives each frame's depth to [`Renderer::prepare`](super::Renderer::prepare),
-    /// before its scope. Tiles need that; without it they are replaced by quads.
+    /// before its scope: an image of one sample, into which a host of several resolves its depth. Tiles need that; without it
+    /// they are replaced by quads, whose samples are tested each.
     pub readable: bool,
     /// An alpha above 0 and at most 1 from which a pixel's depth is written, so that what the host draws later meets the splats
     /// and the cut through them; `None` where no depth is. Draws write the depth of the splat with which the pixel's alpha
@@ -189,6 +190,13 @@ impl RendererDesc {
                 self.color_format
             );
         }
+        if self.color_space == ColorSpace::Linear && self.depth.is_some_and(|depth| !depth.readable)
+        {
+            log::warn!(
+                "RendererDesc::color_space is Linear and DepthDesc::readable is not set: only tiles convert colours, and they need \
+                 the host's depth before its scope, so that only scenes of linear light (Training::linear) will be drawn"
+            );
+        }
         if let Some(expected) = self.expected_depth {
             if !SUMS.contains(&expected.format) {
                 return Err(Error::Invalid(format!(
@@ -218,13 +226,6 @@ impl RendererDesc {
             return Err(Error::Invalid(format!(
                 "DepthDesc::stencil is set and {format:?} has none"
             )));
-        }
-        if depth.readable && self.samples != vk::SampleCountFlags::TYPE_1 {
-            return Err(Error::Invalid(
-                "DepthDesc::readable is set and RendererDesc::samples are several: prepare copies an image of one \
-                 sample; without it splats are drawn as quads, whose samples are tested each"
-                    .into(),
-            ));
         }
         match depth.write_alpha {
             Some(alpha) if !(alpha > 0.0 && alpha <= 1.0) => {

@@ -96,6 +96,8 @@ pub struct Canvas {
     resolved: Option<Image>,
     second: Option<Image>,
     depth: Option<Image>,
+    /// The same of one sample, for canvases of several.
+    resolved_depth: Option<Image>,
     render_pass: vk::RenderPass,
     framebuffer: vk::Framebuffer,
 }
@@ -123,6 +125,7 @@ impl Canvas {
             resolved: None,
             second: None,
             depth: None,
+            resolved_depth: None,
             render_pass: vk::RenderPass::null(),
             framebuffer: vk::Framebuffer::null(),
             desc,
@@ -137,8 +140,11 @@ impl Canvas {
         let resolved = (d.samples != one).then(|| canvas.image(d.color, as_color, one));
         let second = (d.second != UNDEFINED).then(|| canvas.image(d.second, as_color, d.samples));
         let depth = (d.depth != UNDEFINED).then(|| canvas.image(d.depth, as_depth, d.samples));
+        let resolves = depth.is_some() && resolved.is_some();
+        let resolved_depth = resolves.then(|| canvas.image(d.depth, as_depth, one));
         (canvas.color, canvas.resolved) = (color, resolved);
         (canvas.second, canvas.depth) = (second, depth);
+        canvas.resolved_depth = resolved_depth;
         if canvas.desc.render_pass {
             canvas.make_render_pass();
         }
@@ -152,8 +158,9 @@ impl Canvas {
 
     /// The depth buffer as `prepare` takes it, for a viewport that begins at (x, y).
     pub fn depth_image(&self, x: i32, y: i32) -> DepthImage {
+        let depth = self.resolved_depth.as_ref().or(self.depth.as_ref());
         DepthImage {
-            image: self.depth.as_ref().expect("a depth buffer").raw,
+            image: depth.expect("a depth buffer").raw,
             layout: COPIED,
             extent: self.desc.extent,
             layer: 0,
@@ -305,7 +312,7 @@ impl Canvas {
             for image in drawn.into_iter().flatten() {
                 self.turn(cmd, image, undefined, COLOR);
             }
-            if let Some(depth) = &self.depth {
+            for depth in self.depth.iter().chain(&self.resolved_depth) {
                 self.turn(cmd, depth, undefined, DEPTH);
                 self.paint_depth(cmd, depth);
                 self.turn(cmd, depth, DEPTH, COPIED);
@@ -358,6 +365,7 @@ impl Drop for Canvas {
             self.resolved.as_ref(),
             self.second.as_ref(),
             self.depth.as_ref(),
+            self.resolved_depth.as_ref(),
         ];
         // SAFETY: each frame was waited for; null handles are ignored.
         unsafe {

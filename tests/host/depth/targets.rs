@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::canvas::with_host;
+use rara::ColorSpace;
 use rara::gpu::{Bindings, Target};
 
 #[test]
@@ -71,6 +72,39 @@ fn targets_of_several_samples_resolve_to_the_same_picture() {
                 "{raster:?}: {worst}/255, {most}/255 for 99 %"
             );
         }
+    });
+}
+
+/// A host of several samples and of linear light has tiles, too, where it resolves its depth for them.
+#[test]
+fn tiles_draw_linear_light_into_several_samples_behind_a_resolved_depth() {
+    let world = World::new();
+    let map = maps()[1];
+    with_host(true, |host, device| {
+        let first = first(device);
+        let four = vk::SampleCountFlags::TYPE_4;
+        let usage = vk::ImageUsageFlags::COLOR_ATTACHMENT;
+        if !device.sample_counts(FLOATS, usage).contains(four) {
+            eprintln!("SKIPPED: no {FLOATS:?} of four samples on this device");
+            return;
+        }
+        let [one, several] = [vk::SampleCountFlags::TYPE_1, four].map(|samples| {
+            let mut desc = canvas(&world, map, vk::Format::D32_SFLOAT);
+            desc.samples = samples;
+            let depth = depth_desc(&desc, map, true);
+            let canvas = Canvas::new(&host.lend(), device, desc);
+            let desc = RendererDesc::new(FLOATS)
+                .color_space(ColorSpace::Linear)
+                .depth(Some(depth))
+                .samples(samples)
+                .bindings(Bindings::Mixed);
+            let (picture, path) = draw((device, &first), &canvas, &world, desc, Raster::Auto);
+            assert_eq!(path, "tiles");
+            picture
+        });
+        assert!(one.pixels.iter().any(|pixel| pixel[3] > 0.5));
+        let worst = apart(&one, &several, 0.0);
+        assert!(worst < 1e-3, "{worst}/255");
     });
 }
 

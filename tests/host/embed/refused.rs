@@ -6,13 +6,9 @@ use super::*;
 fn what_there_cannot_be_is_refused_with_a_reason() {
     let host = open_host(BYTES, VIEW, true);
     let device = adopt(&host);
-    let depth = |format, stencil, readable| {
+    let depth = |format, stencil| {
         let map = rara::DepthMap::ordinary(0.1, 10.0).expect("a map");
-        Some(
-            rara::DepthDesc::new(format, map)
-                .stencil(stencil)
-                .readable(readable),
-        )
+        Some(rara::DepthDesc::new(format, map).stencil(stencil))
     };
     let desc = RendererDesc::new(BYTES);
     let name = &device.info().name;
@@ -30,17 +26,12 @@ fn what_there_cannot_be_is_refused_with_a_reason() {
             ["frames_in_flight is 4294967295", "from 1 to 16"],
         ),
         (
-            desc.depth(depth(vk::Format::S8_UINT, false, false)),
+            desc.depth(depth(vk::Format::S8_UINT, false)),
             ["S8_UINT", "no depth"],
         ),
         (
-            desc.depth(depth(vk::Format::D32_SFLOAT, true, false)),
+            desc.depth(depth(vk::Format::D32_SFLOAT, true)),
             ["D32_SFLOAT", "DepthDesc::stencil"],
-        ),
-        (
-            desc.depth(depth(vk::Format::D32_SFLOAT, false, true))
-                .samples(vk::SampleCountFlags::TYPE_4),
-            ["DepthDesc::readable", "samples"],
         ),
         (
             desc.expected_depth(Some(rara::ExpectedDepthDesc::new(vk::Format::R32_SFLOAT))),

@@ -144,6 +144,28 @@ pub(crate) unsafe fn list<'a, T>(first: *const T, count: usize, name: &str) -> R
     Ok(std::slice::from_raw_parts(first, count))
 }
 
+/// Writes as many of what was found as there is room for, and none where `first` is null. `*count` is the room on entry, and
+/// becomes how many were found.
+///
+/// # Safety
+/// `first` is null, or has room for `*count` values, which nobody else uses; `count` is null, or may be overwritten.
+pub(crate) unsafe fn write_list<T, F>(
+    first: *mut T,
+    count: *mut usize,
+    found: &[F],
+    make: impl Fn(&F) -> T,
+) -> Result<()> {
+    let count = exclusive(count, "count")?;
+    if !first.is_null() {
+        check_count::<T>(*count, "count")?;
+        for (place, one) in found.iter().take(*count).enumerate() {
+            first.add(place).write(make(one));
+        }
+    }
+    *count = found.len();
+    Ok(())
+}
+
 /// Memory to be written; with a size of 0 the pointer may be null.
 ///
 /// # Safety

@@ -80,6 +80,8 @@ pub struct RaraAdoptDesc {
     pub free: RaraFree,
     /// The value that `allocate` and `free` are called with. Default: null.
     pub allocator_user: *mut c_void,
+    /// True when the feature pipelineStatisticsQuery was enabled. Default: false.
+    pub pipeline_statistics: vk::Bool32,
 }
 
 versioned!(RaraAdoptDesc);
@@ -153,6 +155,7 @@ pub unsafe extern "C" fn rara_device_adopt(
             .full_subgroups(desc.full_subgroups != 0)
             .shape(shape(&desc)?)
             .debug_utils(desc.debug_utils != 0)
+            .pipeline_statistics(desc.pipeline_statistics != 0)
             .pipeline_cache(desc.pipeline_cache)
             .memory(lender.map(|lender| Arc::new(lender) as _));
         let release = Arc::new(Release {

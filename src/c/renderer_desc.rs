@@ -67,7 +67,7 @@ pub struct RaraRendererDesc {
     pub subpass: u32,
     /// How shaders reach buffers.
     pub bindings: RaraBindings,
-    /// True to take timestamps, for the times in RaraFrameStats. Default: false.
+    /// True to take timestamps, for the times in RaraFrameStats and for rara_renderer_pass_spans. Default: false.
     pub timing: vk::Bool32,
     /// True to let a frame take over what the one before has computed and it would compute again. The host must then
     /// submit every frame that it prepares, in order, or call rara_renderer_forget. Default: false.
@@ -83,6 +83,9 @@ pub struct RaraRendererDesc {
     pub expected_depth_subpass: u32,
     /// The encoding of the colours in the colour attachment.
     pub color_space: RaraColorSpace,
+    /// True to count also what the stages do, for rara_renderer_pass_statistics: with timing, and where RaraAdoptDesc has
+    /// pipeline_statistics. No query of the host's for such statistics is active around the recorded calls then. Default: false.
+    pub statistics: vk::Bool32,
 }
 
 versioned!(RaraRendererDesc);
@@ -141,7 +144,6 @@ pub(crate) unsafe fn renderer_desc(desc: *const RaraRendererDesc) -> Result<Rend
         other => return invalid(format!("desc->color_space {other} is no RaraColorSpace")),
     };
     let target = target(desc.render_pass, desc.subpass);
-    // Statistics stay off: they need a device that rara has opened itself.
     Ok(RendererDesc::new(desc.color_format)
         .color_space(color_space)
         .depth(depth)
@@ -150,11 +152,12 @@ pub(crate) unsafe fn renderer_desc(desc: *const RaraRendererDesc) -> Result<Rend
         .target(target)
         .bindings(bindings)
         .timing(desc.timing != 0)
+        .statistics(desc.statistics != 0)
         .reuse(desc.reuse != 0)
         .frames_in_flight(desc.frames_in_flight))
 }
 
-/// One colour attachment of one sample in dynamic rendering, no timestamps, no reuse, one frame in flight. `desc_size` is
+/// One colour attachment of one sample in dynamic rendering, no timestamps, no statistics, no reuse, one frame in flight. `desc_size` is
 /// sizeof *desc.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_renderer_desc_default(

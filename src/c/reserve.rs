@@ -4,7 +4,9 @@ use std::ffi::c_char;
 
 use rara::{FrameLimits, Preset, Result, Settings};
 
-use crate::boundary::{RaraResult, Versioned, exclusive, guard, read, read_list, versioned, write};
+use crate::boundary::{
+    RaraResult, Versioned, exclusive, guard, read, read_list, versioned, write, write_list,
+};
 use crate::camera::{self, RaraCamera};
 use crate::device::RaraDevice;
 use crate::frame::RaraFrame;
@@ -226,18 +228,12 @@ pub unsafe extern "C" fn rara_device_memory_by_name(
 ) -> RaraResult {
     guard(|| {
         let device = alive(device, "device")?;
-        let count = exclusive(count, "count")?;
-        let found = device.0.memory_by_name();
-        for (place, part) in found.iter().take(*count).enumerate() {
-            if !parts.is_null() {
-                parts.add(place).write(RaraNamedBytes {
-                    name: fixed(&part.name),
-                    bytes: part.bytes,
-                });
+        write_list(parts, count, &device.0.memory_by_name(), |part| {
+            RaraNamedBytes {
+                name: fixed(&part.name),
+                bytes: part.bytes,
             }
-        }
-        *count = found.len();
-        Ok(())
+        })
     })
 }
 

@@ -4,7 +4,7 @@ use std::ffi::c_char;
 
 use rara::ash::vk;
 
-use crate::boundary::{RaraResult, Versioned, guard, versioned, write};
+use crate::boundary::{RaraResult, Versioned, guard, versioned, write, write_list};
 use crate::handles::alive;
 use crate::renderer::RaraRenderer;
 use crate::settings::{
@@ -109,5 +109,80 @@ pub unsafe extern "C" fn rara_renderer_stats(
             *to = fixed(from);
         }
         write(stats, stats_size, &found, "stats")
+    })
+}
+
+/// When one stage of a frame began and ended.
+///
+/// Ticks are of the device's clock: RaraSupport::timestamp_period nanoseconds each. They have as many bits as the queue family's
+/// timestampValidBits, and begin at 0 again after those. vkGetCalibratedTimestampsEXT reads the same clock beside the host's. It never grows.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct RaraPassSpan {
+    /// The stage, as in RaraPassTime.
+    pub name: [c_char; RARA_NAME_SIZE],
+    /// The tick at which all earlier work was done.
+    pub begin: u64,
+    /// The tick at which its own work was done too.
+    pub end: u64,
+}
+
+/// The work of one stage, as the device counts it. It never grows.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct RaraPassStatistics {
+    /// The stage, as in RaraPassTime.
+    pub name: [c_char; RARA_NAME_SIZE],
+    /// Compute shader invocations.
+    pub compute_invocations: u64,
+    /// Vertex shader invocations; mesh shaders have none.
+    pub vertex_invocations: u64,
+    /// Primitives that are left after clipping.
+    pub primitives: u64,
+    /// Fragment shader invocations.
+    pub fragment_invocations: u64,
+}
+
+/// Lists when each stage of the frame of rara_renderer_stats began and ended, in the order in which they began; there are none
+/// without RaraRendererDesc's timing. Asked for at the same moment.
+///
+/// On entry `*count` is how many there is room for at `spans`; it becomes how many there are. No more are written than there is
+/// room for, and none where `spans` is null.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_renderer_pass_spans(
+    renderer: *const RaraRenderer,
+    spans: *mut RaraPassSpan,
+    count: *mut usize,
+) -> RaraResult {
+    guard(|| {
+        let found = alive(renderer, "renderer")?.0.pass_spans();
+        write_list(spans, count, &found, |span| RaraPassSpan {
+            name: fixed(span.name),
+            begin: span.begin,
+            end: span.end,
+        })
+    })
+}
+
+/// Lists the work of each stage of the frame of rara_renderer_stats; there are none without RaraRendererDesc's timing and
+/// statistics. Asked for at the same moment.
+///
+/// On entry `*count` is how many there is room for at `statistics`; it becomes how many there are. No more are written than there
+/// is room for, and none where `statistics` is null.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_renderer_pass_statistics(
+    renderer: *const RaraRenderer,
+    statistics: *mut RaraPassStatistics,
+    count: *mut usize,
+) -> RaraResult {
+    guard(|| {
+        let found = alive(renderer, "renderer")?.0.pass_statistics();
+        write_list(statistics, count, &found, |pass| RaraPassStatistics {
+            name: fixed(pass.name),
+            compute_invocations: pass.compute_invocations,
+            vertex_invocations: pass.vertex_invocations,
+            primitives: pass.primitives,
+            fragment_invocations: pass.fragment_invocations,
+        })
     })
 }

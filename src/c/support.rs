@@ -43,6 +43,9 @@ pub struct RaraSupport {
     /// subgroupSizeControl and computeFullSubgroups, of Vulkan 1.3 or VK_EXT_subgroup_size_control. Optional: on GPUs the
     /// sort is faster with them.
     pub full_subgroups: vk::Bool32,
+    /// pipelineStatisticsQuery of VkPhysicalDeviceFeatures. Optional: RaraRendererDesc::statistics needs it, and a host that
+    /// wants them enables it, as rara_support_features does not.
+    pub pipeline_statistics: vk::Bool32,
 }
 
 versioned!(RaraSupport);
@@ -67,6 +70,7 @@ impl RaraSupport {
             max_image_size: support.max_image_size,
             api_version: support.api_version,
             full_subgroups: (support.full_subgroups[1] > 0).into(),
+            pipeline_statistics: support.pipeline_statistics.into(),
         }
     }
 

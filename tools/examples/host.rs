@@ -24,7 +24,7 @@ pub(crate) struct HostDesc<'a> {
     pub(crate) device: Option<&'a str>,
     /// Load the Khronos validation layer with checks of synchronisation and best practices.
     pub(crate) validation: bool,
-    /// Enable what is optional: mesh shaders, push descriptors.
+    /// Enable what is optional: mesh shaders, push descriptors, pipeline statistics.
     pub(crate) optional: bool,
     /// Size of the targets.
     pub(crate) extent: vk::Extent2D,
@@ -67,6 +67,9 @@ impl Host {
                 choose(&instance, VERSION, desc.device.unwrap_or_default())?;
             support.mesh_shader &= desc.optional;
             support.push_descriptor &= desc.optional;
+            support.pipeline_statistics &= desc.optional;
+            let counts = vk::PhysicalDeviceFeatures::default()
+                .pipeline_statistics_query(support.pipeline_statistics);
             let extensions: Vec<_> = support.extensions().iter().map(|e| e.as_ptr()).collect();
             let mut features = support.features();
             let queues = [vk::DeviceQueueCreateInfo::default()
@@ -74,7 +77,8 @@ impl Host {
                 .queue_priorities(&[1.0])];
             let info = vk::DeviceCreateInfo::default()
                 .queue_create_infos(&queues)
-                .enabled_extension_names(&extensions);
+                .enabled_extension_names(&extensions)
+                .enabled_features(&counts);
             let device = instance
                 .create_device(physical_device, &features.chain(info), None)
                 .map_err(rara_gpu::failed("vkCreateDevice"))?;
@@ -117,6 +121,7 @@ impl Host {
         .push_descriptor(self.support.push_descriptor)
         .full_subgroups(self.support.full_subgroups[1] > 0)
         .debug_utils(self.messenger.is_some())
+        .pipeline_statistics(self.support.pipeline_statistics)
         .pipeline_cache(self.pipeline_cache)
     }
 

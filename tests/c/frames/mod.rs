@@ -6,6 +6,7 @@ mod channels;
 mod layers;
 mod lent;
 mod ours;
+mod passes;
 mod picks;
 mod regions;
 mod reserve;

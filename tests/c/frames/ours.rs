@@ -59,6 +59,7 @@ impl Ours {
             desc.push_descriptor = host.push_descriptor.into();
             desc.debug_utils = host.debug_utils.into();
             desc.full_subgroups = host.full_subgroups.into();
+            desc.pipeline_statistics = host.pipeline_statistics.into();
             desc.api_version = host.api_version;
             add(&mut desc);
             assert_ok(rara_device_adopt(&desc, &mut device));

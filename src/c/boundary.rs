@@ -11,6 +11,8 @@ use rara::ash::vk;
 use rara::gpu::WriteOnly;
 use rara::{Error, Result};
 
+use crate::names::in_c;
+
 /// The result of every function that can fail. After anything but RARA_OK rara_last_error_message says more.
 pub type RaraResult = i32;
 /// Done.
@@ -73,7 +75,7 @@ pub(crate) fn guard(run: impl FnOnce() -> Result<()>) -> RaraResult {
 }
 
 fn fail(code: RaraResult, message: &str) -> RaraResult {
-    let message = c_string(message);
+    let message = c_string(&in_c(message));
     // This has no effect while the thread is ending.
     let _ = MESSAGE.try_with(|last| last.replace(message));
     code

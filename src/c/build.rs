@@ -1,6 +1,6 @@
-//! Makes `rara.h` of the sources. Gives the shared library the name by which programs look for it: librara.so and the version
-//! of the header, which changes when they must be compiled anew. For the tests, lists what the header has: functions with
-//! arguments that are null, and structs.
+//! Makes `rara.h` of the sources, and lists the names that it has, for messages. Gives the shared library the name by which
+//! programs look for it: librara.so and the version of the header, which changes when they must be compiled anew. For the tests,
+//! lists what the header has: functions with arguments that are null, and structs.
 
 use std::env;
 use std::fmt::Write;
@@ -25,6 +25,7 @@ fn main() {
     let header = header.generate().expect("C has all that the sources use");
     header.write_to_file(out.join("rara.h"));
     fs::write(out.join("lists.rs"), lists(&sources)).expect("cargo's folder");
+    fs::write(out.join("names.rs"), names(&sources)).expect("cargo's folder");
 
     let named = sources.split("RARA_ABI_VERSION: u32 = ").nth(1);
     let version = named.and_then(|from| from.split(';').next());
@@ -45,20 +46,9 @@ fn main() {
 /// none, each with arguments, the structs with their last fields, and what fills those that go in.
 fn lists(sources: &str) -> String {
     let [mut results, mut others, mut structs, mut defaults] = [const { String::new() }; 4];
-    for text in sources.split("pub struct ").skip(1) {
-        let Some((name, body)) = text.split_once(" {\n") else {
-            continue;
-        };
-        let body = body.split("\n}").next().unwrap_or_default();
-        let fields = || {
-            body.lines()
-                .filter_map(|line| line.strip_prefix("    pub "))
-        };
-        let last = fields()
-            .next_back()
-            .and_then(|field| field.split(':').next());
-        if let Some(last) = last.filter(|_| is_name(name)) {
-            let grows = fields().any(|field| field.starts_with("struct_size: usize"));
+    for (name, fields) in fields(sources) {
+        if let Some(last) = fields.last() {
+            let grows = fields.contains(&"struct_size");
             let _ = write!(structs, "{name} {last} {grows}, ");
         }
     }
@@ -108,6 +98,43 @@ fn lists(sources: &str) -> String {
         )
     };
     lists.iter().map(list).collect()
+}
+
+/// What names.rs is: the fields of the structs, and the functions and constants.
+fn names(sources: &str) -> String {
+    let [mut all, mut others] = [const { String::new() }; 2];
+    for (name, fields) in fields(sources) {
+        for field in fields {
+            let _ = write!(all, "(\"{name}\", \"{field}\"), ");
+        }
+    }
+    for before in ["extern \"C\" fn ", "pub const "] {
+        for text in sources.split(before).skip(1) {
+            let name = text.split(['(', ':']).next().filter(|name| is_name(name));
+            if let Some(name) = name {
+                let _ = write!(others, "\"{name}\", ");
+            }
+        }
+    }
+    format!("const FIELDS: &[(&str, &str)] = &[{all}];\nconst NAMES: &[&str] = &[{others}];\n")
+}
+
+/// The structs of the header, and the names of their fields.
+fn fields(sources: &str) -> Vec<(&str, Vec<&str>)> {
+    let mut found = Vec::new();
+    for text in sources.split("pub struct ").skip(1) {
+        let Some((name, body)) = text.split_once(" {\n") else {
+            continue;
+        };
+        let body = body.split("\n}").next().unwrap_or_default();
+        let fields = body
+            .lines()
+            .filter_map(|line| line.strip_prefix("    pub ")?.split(':').next());
+        if is_name(name) {
+            found.push((name, fields.collect()));
+        }
+    }
+    found
 }
 
 fn is_name(text: &str) -> bool {

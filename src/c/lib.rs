@@ -35,6 +35,7 @@ pub mod lent;
 pub mod load;
 pub mod logging;
 pub mod matrices;
+mod names;
 mod numbering;
 pub mod picker;
 pub mod placement;

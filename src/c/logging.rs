@@ -9,6 +9,7 @@ use std::sync::{OnceLock, PoisonError, RwLock};
 use log::{LevelFilter, Log, Metadata, Record};
 
 use crate::boundary::{RaraResult, c_string, guard, invalid};
+use crate::names::in_c;
 
 /// How much a line of the log matters.
 pub type RaraLogLevel = u32;
@@ -78,7 +79,7 @@ fn forward(record: &Record<'_>) {
     if TELLING.get() {
         return; // the host's function has called rara, which it must not
     }
-    let text = c_string(&record.args().to_string());
+    let text = c_string(&in_c(&record.args().to_string()));
     let host = HOST.read().unwrap_or_else(PoisonError::into_inner);
     if let Some(Host { log, user }) = &*host {
         TELLING.set(true);

@@ -6,6 +6,7 @@ use rara::ash::vk;
 
 use crate::boundary::{RaraResult, Versioned, guard, versioned, write, write_list};
 use crate::handles::alive;
+use crate::names::in_c;
 use crate::renderer::RaraRenderer;
 use crate::settings::{
     RARA_RASTER_AUTO, RARA_RASTER_MESH, RARA_RASTER_QUAD, RARA_RASTER_TILES, RaraRaster,
@@ -91,7 +92,7 @@ pub unsafe extern "C" fn rara_renderer_stats(
                 "tiles" => RARA_RASTER_TILES,
                 _ => RARA_RASTER_AUTO,
             },
-            raster_reason: fixed(raster.reason),
+            raster_reason: fixed(&in_c(raster.reason)),
             fell_back: renderer.fell_back().into(),
             pass_count: times.len().min(RARA_MAX_PASSES) as u32,
             gpu_ms: match times.is_empty() {

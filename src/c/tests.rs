@@ -25,6 +25,7 @@ pub(crate) fn message() -> String {
 #[track_caller]
 pub(crate) fn assert_fails(result: RaraResult, code: RaraResult, part: &str) {
     let message = message();
+    assert!(!message.contains("::"), "a name of Rust's: {message}");
     assert!(
         result == code && message.contains(part),
         "{result}: {message}"

@@ -8,8 +8,7 @@ use super::desc::AdoptDesc;
 use rara_base::error::{Error, Result};
 
 /// What is to be done where a function of the version's own is missing.
-const ENABLE: &str =
-    "create the device with the extensions and features that gpu::check, in C rara_check, names";
+const ENABLE: &str = "create the device with the extensions and features that gpu::check names";
 
 /// Checks that a host's device has the functions of what its description claims, in a Vulkan version.
 ///

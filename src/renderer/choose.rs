@@ -35,8 +35,8 @@ pub(super) fn raster(
     Ok(match settings.raster {
         _ if targets.converted && !can_tile => {
             return Err(Error::Invalid(
-                "either the scene (Training::linear) or the host (ColorSpace::Linear) has colours in linear light, and only \
-                 tiles can convert them for the other; use Raster::Auto or Raster::Tiles, and make the host's depth readable \
+                "either the scene was trained in linear light or the host has it (ColorSpace::Linear), and only tiles can \
+                 convert them for the other; use Raster::Auto or Raster::Tiles, and make the host's depth readable \
                  (DepthDesc::readable)"
                     .into(),
             ));

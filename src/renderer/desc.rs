@@ -185,8 +185,8 @@ impl RendererDesc {
         self.check_color(device, self.color_format)?;
         if self.blends_stored_as_light() {
             log::warn!(
-                "RendererDesc::color_format is {:?}, in which devices blend in linear light, and color_space is Stored: colours come out \
-                 wrong; draw into a UNORM view of the image, or set ColorSpace::Linear",
+                "RendererDesc::color_format is {:?}, in which devices blend in linear light, and RendererDesc::color_space is ColorSpace::Stored: \
+                 colours come out wrong; draw into a UNORM view of the image, or set ColorSpace::Linear",
                 self.color_format
             );
         }

@@ -218,7 +218,9 @@ impl Renderer {
         match &mut self.desc.depth {
             Some(depth) => depth.map = map,
             None => {
-                return out_of_order("set_depth_map needs a depth attachment in its RendererDesc");
+                return out_of_order(
+                    "set_depth_map needs a depth attachment: set RendererDesc::depth",
+                );
             }
         }
         Ok(())

@@ -13,8 +13,8 @@ impl Renderer {
             match raster.reason {
                 // 911 ms for 150 on a CPU driver, 23 to 110 for .8 to 2.6 on an H200.
                 choose::HIDDEN => log::warn!(
-                    "{how}. Tiles take a fraction of the time: draw what is opaque in an earlier scope, and give prepare the depth \
-                     image"
+                    "{how}. Tiles take a fraction of the time: draw what is opaque in an earlier scope, and give Renderer::prepare \
+                     the depth image"
                 ),
                 _ => log::info!("{how}"),
             }

@@ -46,7 +46,7 @@ impl Renderer {
             return out_of_order("prepare was given another renderer's frame");
         }
         if state.decision.scene != scene.id {
-            return out_of_order("prepare was given another scene than configure()");
+            return out_of_order("prepare was given another scene than Renderer::configure");
         }
         match depth {
             None if readable => {
@@ -70,7 +70,7 @@ impl Renderer {
         if state.decision.takes_over(owns_cut) && !is_next {
             return out_of_order(
                 "prepare was given a frame that takes over from another than the one before: prepare frames in the order in \
-                 which they were configured, and configure again after forget()",
+                 which they were configured, and configure again after Renderer::forget",
             );
         }
         let slot = self.frames.begin(&state.decision);

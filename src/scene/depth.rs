@@ -157,7 +157,7 @@ impl DepthMap {
         match self.projection == projection {
             true => Ok(()),
             false => Err(Error::Invalid(format!(
-                "the camera is {projection:?} and the depth map {:?}; give set_depth_map the map of the camera's projection first",
+                "the camera is {projection:?} and the depth map {:?}; give Renderer::set_depth_map the map of the camera's projection first",
                 self.projection
             ))),
         }

@@ -160,7 +160,15 @@ fn a_frame_has_lines_for_those_who_embed() {
         ));
         let mut renderer = null_mut();
         assert_ok(rara_renderer_create(device, &desc, &mut renderer));
-        taken();
+        desc.color_format = vk::Format::R8G8B8A8_SRGB;
+        let mut other = null_mut();
+        assert_ok(rara_renderer_create(device, &desc, &mut other));
+        rara_renderer_destroy(other);
+        has(
+            &taken(),
+            RARA_LOG_LEVEL_WARN,
+            "RaraRendererDesc.color_format is R8G8B8A8_SRGB",
+        );
         draw(&mut host, renderer, scene, &camera);
         let first = taken();
         has(&first, RARA_LOG_LEVEL_INFO, "splats become pixels by ");

@@ -97,7 +97,7 @@ fn a_host_in_c_reserves_within_a_budget_and_gives_back() {
                 before.bytes + (1 << 10),
             ));
             let refused = rara_renderer_reserve(renderer, &limits);
-            assert_fails(refused, RARA_ERROR_MEMORY, "Device::set_memory_budget");
+            assert_fails(refused, RARA_ERROR_MEMORY, "rara_device_set_memory_budget");
             assert_eq!(
                 made(device),
                 (before.pipeline_count, before.allocation_count)

@@ -65,7 +65,7 @@ fn calls_in_an_order_that_makes_no_sense_are_refused() {
     let configured = configured.expect("configures");
     // SAFETY: it is refused before anything is recorded.
     let prepared = unsafe { renderer.prepare(null, &other, None, configured) };
-    refused(prepared.map(drop), "another scene than configure()");
+    refused(prepared.map(drop), "another scene than Renderer::configure");
     let map = rara::DepthMap::ordinary(0.1, 10.0).expect("a map");
     refused(renderer.set_depth_map(map), "depth attachment");
     // A scene on a device of its own.

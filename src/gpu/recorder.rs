@@ -167,10 +167,23 @@ impl<'a> Recorder<'a> {
         self.device.note_dispatch(pipeline.name(), groups);
         let record = |this: &mut Self| this.dispatch_now(pipeline, buffers, params, groups);
         if self.times_dispatches() {
-            self.timed(pipeline.name(), record);
+            self.timed(pipeline.name(), |this| {
+                this.await_timestamp();
+                record(this);
+            });
         } else {
             record(self);
         }
+    }
+
+    /// Lets what follows begin only when the timestamp before it is written. A timestamp waits for what comes before it, and
+    /// nothing waits for the timestamp: lavapipe, where a host has drawn before, writes it no sooner than the next barrier.
+    fn await_timestamp(&self) {
+        self.barrier(
+            &vk::MemoryBarrier2::default()
+                .src_stage_mask(vk::PipelineStageFlags2::ALL_COMMANDS)
+                .dst_stage_mask(vk::PipelineStageFlags2::ALL_COMMANDS),
+        );
     }
 
     fn dispatch_now(

@@ -40,20 +40,25 @@ impl Drop for Folder {
     }
 }
 
+/// Says that a process runs one test, which it was started for.
+const CHILD: &str = "RARA_TEST_ALONE";
+
 /// For a test in whose process nothing else may run: whether it has run in one of its own, so that nothing is left to do here.
 /// nextest gives every test a process; `cargo test` runs those of an executable side by side in one.
-pub fn has_run_alone<T: Fn()>(_: T) -> bool {
-    const CHILD: &str = "RARA_TEST_ALONE";
-    if ["NEXTEST", CHILD]
-        .iter()
-        .any(|set| env::var_os(set).is_some())
-    {
+pub fn has_run_alone<T: Fn()>(test: T) -> bool {
+    env::var_os("NEXTEST").is_none() && has_run_with(&[], test)
+}
+
+/// For a test whose process has variables in its environment: whether it has run in one that has them.
+pub fn has_run_with<T: Fn()>(variables: &[(&str, &str)], _: T) -> bool {
+    if env::var_os(CHILD).is_some() {
         return false;
     }
     let path = any::type_name::<T>();
     let (_, test) = path.split_once("::").expect("the test's executable");
     let output = process::Command::new(env::current_exe().expect("this executable"))
         .args(["--exact", test, "--include-ignored", "--nocapture"])
+        .envs(variables.iter().copied())
         .env(CHILD, "")
         .output()
         .expect("this executable starts");

@@ -2,6 +2,7 @@
 
 mod classic_host;
 mod depth;
+mod dispatches;
 mod dynamic_state;
 mod embed;
 mod features;

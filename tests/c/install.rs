@@ -52,6 +52,56 @@ fn installed(folder: &Folder) -> std::path::PathBuf {
     prefix
 }
 
+/// What tools/install-c says where it installs nothing.
+#[cfg(target_os = "linux")]
+fn refused(install: &mut Command) -> String {
+    let output = install.output().expect("it starts");
+    assert!(!output.status.success());
+    String::from_utf8(output.stderr).expect("UTF-8")
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn what_is_missing_is_said_before_anything_is_made() {
+    let folder = Folder::new("c-missing");
+    let (tools, prefix) = (folder.join("tools"), folder.join("not/there"));
+    std::fs::create_dir(&tools).expect("a temporary folder");
+    let path = std::env::var_os("PATH").expect("it is set");
+    for tool in ["bash", "dirname", "sed", "uname"] {
+        let mut places = std::env::split_paths(&path).map(|place| place.join(tool));
+        let own = places
+            .find(|own| own.exists())
+            .expect("it is on every machine");
+        std::os::unix::fs::symlink(own, tools.join(tool)).expect("a link");
+    }
+    let script = root().join("tools/install-c");
+    let bare = || {
+        let mut bash = Command::new(tools.join("bash"));
+        bash.arg(&script)
+            .env("PATH", &tools)
+            .env("CARGO_HOME", &*folder);
+        bash
+    };
+    let said = refused(bare().arg(&prefix));
+    for tool in ["cargo", "cc", "ld", "objcopy", "ar"] {
+        assert!(
+            said.contains(&format!("\n  {tool}: install ")),
+            "{tool}: {said}"
+        );
+    }
+    assert!(!said.contains("a folder to write to"), "{said}");
+    assert!(!folder.join("not").exists(), "nothing was made");
+    // The libraries are built already, and a file is in the way.
+    let file = folder.join("file");
+    std::fs::write(&file, "").expect("a temporary file");
+    let said = refused(bare().arg(file.join("prefix")).arg(&*folder));
+    assert!(!said.contains("cargo"), "{said}");
+    let none = format!("a folder to write to: {} is none", file.display());
+    assert_eq!(said.matches(&none).count(), 1, "{said}");
+    let said = refused(bare().arg(&prefix).arg(&prefix));
+    assert!(said.contains("is no folder; give cargo's"), "{said}");
+}
+
 /// True where a tool starts; says what is not tested where it does not.
 fn has(tool: &str) -> bool {
     let found = Command::new(tool).arg("--version").output().is_ok();

@@ -194,7 +194,7 @@ impl RendererDesc {
         {
             log::warn!(
                 "RendererDesc::color_space is Linear and DepthDesc::readable is not set: only tiles convert colours, and they need \
-                 the host's depth before its scope, so that only scenes of linear light (Training::linear) will be drawn"
+                 the host's depth before its scope, so that only scenes of linear light will be drawn"
             );
         }
         if let Some(expected) = self.expected_depth {

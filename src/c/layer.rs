@@ -5,13 +5,16 @@ use std::ffi::c_char;
 use rara::ash::vk;
 use rara::{Error, LayerState, Result};
 
-use crate::boundary::{RaraResult, Versioned, guard, invalid, read, read_list, versioned, write};
+use crate::boundary::{
+    RaraResult, Versioned, guard, invalid, read, read_list, recording, versioned, write,
+};
 use crate::clip::{self, RaraClip};
 use crate::gaussians::RaraGaussians;
-use crate::handles::{alive, alone};
+use crate::handles::{alive, alone, number};
 use crate::layer_info::check_index;
 use crate::placement::RaraPlacement;
 use crate::scene::{HostLayer, RaraSceneBuffers};
+use crate::staging::{self, RaraStaging};
 use crate::text::text;
 
 /// The state of a layer, which may change from frame to frame.
@@ -164,6 +167,68 @@ pub unsafe extern "C" fn rara_scene_buffers_set_layer_state(
         let name = scene.buffers.layers()[index].name().to_owned();
         let state = self::state(state, "state", &name)?;
         scene.buffers.set_layer_state(index, state)
+    })
+}
+
+/// Replaces the Gaussians of a layer by as many or fewer than it was uploaded with, and waits for it. Nothing of the other layers
+/// is touched, and the layer keeps its name, state and clip. The host has waited for all frames that show the scene; a frame
+/// that was configured before, and a RaraCut, are configured anew. RARA_ERROR_INVALID for a number that no layer has, for more
+/// Gaussians than it has room for or of a higher degree than the scene's, for colours of another light than the other layers',
+/// and for a layer of Gaussians that rara_gaussians_select has divided.
+///
+/// # Safety
+/// As for rara_scene_buffers_upload.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_scene_buffers_replace_layer(
+    scene: *mut RaraSceneBuffers,
+    index: usize,
+    gaussians: *const RaraGaussians,
+) -> RaraResult {
+    guard(|| {
+        let mut scene = alone(scene, "scene")?;
+        check_index(&scene, index)?;
+        let gaussians = alive(gaussians, "gaussians")?;
+        scene.buffers.replace_layer(index, &gaussians.gaussians)
+    })
+}
+
+/// Does what rara_scene_buffers_replace_layer does by the host's own means, as rara_scene_buffers_upload_with does: writes the
+/// layer alone into the host's staging memory, which has rara_scene_buffers_layer_staging_bytes, and records the copies. Nothing
+/// waits: frames that were submitted before show the layer as it was, those that are configured afterwards as it is.
+///
+/// # Safety
+/// As for rara_scene_buffers_upload_with.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_scene_buffers_replace_layer_with(
+    scene: *mut RaraSceneBuffers,
+    cmd: vk::CommandBuffer,
+    staging: *const RaraStaging,
+    index: usize,
+    gaussians: *const RaraGaussians,
+) -> RaraResult {
+    guard(|| {
+        let mut scene = alone(scene, "scene")?;
+        let cmd = recording(cmd)?;
+        let staging = staging::staging(staging)?;
+        check_index(&scene, index)?;
+        let gaussians = alive(gaussians, "gaussians")?;
+        let gaussians = &gaussians.gaussians;
+        scene
+            .buffers
+            .replace_layer_with(cmd, staging, index, gaussians)
+    })
+}
+
+/// Bytes of staging memory that rara_scene_buffers_replace_layer_with needs for so many Gaussians in place of a layer's; 0 for a
+/// number that no layer has.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_scene_buffers_layer_staging_bytes(
+    scene: *const RaraSceneBuffers,
+    index: usize,
+    gaussians: u32,
+) -> u64 {
+    number(scene, "scene", |scene| {
+        scene.buffers.layer_staging_bytes(index, gaussians)
     })
 }
 

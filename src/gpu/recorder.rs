@@ -332,7 +332,7 @@ impl<'a> Recorder<'a> {
         part
     }
 
-    /// Copies from the beginning at `offset` of a buffer that is not ours, to the beginning of one that is.
+    /// Copies so many bytes from an offset of a buffer that is not ours, to an offset of one that is.
     ///
     /// # Safety
     ///
@@ -340,17 +340,19 @@ impl<'a> Recorder<'a> {
     /// bytes must be visible to the copy.
     pub unsafe fn copy_from(
         &mut self,
-        source: vk::Buffer,
-        offset: u64,
-        target: &Buffer,
+        (source, from): (vk::Buffer, u64),
+        (target, to): (&Buffer, u64),
         size: u64,
     ) {
-        target.check_range(0, size);
+        target.check_range(to, size);
         if size == 0 {
             return;
         }
         self.before(&[(target.handle(), Access::TransferWrite)]);
-        let region = vk::BufferCopy::default().src_offset(offset).size(size);
+        let region = vk::BufferCopy::default()
+            .src_offset(from)
+            .dst_offset(to)
+            .size(size);
         // SAFETY: `begin`'s contract covers `cmd` and `target`, the caller vouches for `source`.
         unsafe {
             self.device

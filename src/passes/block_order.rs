@@ -76,6 +76,14 @@ fn sort(keys: &mut [u64], threads: usize) {
     });
 }
 
+/// The bounds of a block that holds nothing.
+pub(super) const EMPTY: Block = Block {
+    low_reach: [f32::MAX, f32::MAX, f32::MAX, -1.0],
+    high_sigma: [f32::MIN, f32::MIN, f32::MIN, 0.0],
+    spanning_scale: 0.0,
+    pad: [0; 3],
+};
+
 /// The blocks of an order.
 pub(super) fn blocks(scene: &Gaussians, order: &[u32]) -> Vec<Block> {
     let blocks = in_parallel(order.chunks(CHUNK), |numbers| {

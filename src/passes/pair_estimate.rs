@@ -15,12 +15,12 @@ use rara_scene::{Gaussians, Scene};
 const SAMPLES: usize = 2048;
 
 /// A sample of a scene's Gaussians, by layers.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct PairSample {
     layers: Vec<LayerSample>,
 }
 
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 struct LayerSample {
     largest: Vec<SampleGaussian>,
     /// How many Gaussians each of the rest stands for.
@@ -40,13 +40,20 @@ struct SampleGaussian {
 impl PairSample {
     /// The sample of a scene.
     pub(super) fn new(scene: &Scene<'_>) -> Self {
-        let step = scene.gaussians().div_ceil(SAMPLES / 2).max(1);
+        let step = step(scene.gaussians());
         let layers = scene.layers().iter();
         Self {
             layers: layers
                 .map(|layer| LayerSample::new(layer.gaussians(), step))
                 .collect(),
         }
+    }
+
+    /// The sample of a scene of so many Gaussians with others in a layer.
+    pub(super) fn with(&self, index: usize, gaussians: &Gaussians, count: usize) -> Self {
+        let mut sample = self.clone();
+        sample.layers[index] = LayerSample::new(gaussians, step(count));
+        sample
     }
 
     /// The pairs of a picture of these layers, which are the sample's, without what a clip leaves out. The picture is a part of
@@ -63,6 +70,11 @@ impl PairSample {
             });
         pairs.sum::<f64>().ceil() as u32 // what is too much for 32 bits becomes the most that they hold
     }
+}
+
+/// Of how many Gaussians of a scene one is taken.
+fn step(count: usize) -> usize {
+    count.div_ceil(SAMPLES / 2).max(1)
 }
 
 impl LayerSample {

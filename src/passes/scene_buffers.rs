@@ -1,5 +1,6 @@
 //! The scene on the device: geometry and spherical harmonics, uploaded once.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -8,26 +9,28 @@ use bytemuck::cast_slice;
 
 use crate::passes::cut_plan::SceneFacts;
 use crate::passes::pair_estimate::PairSample;
-use crate::passes::scene_layer::{PackedLayer, SceneLayer, join_sets, layer_index, sizes};
+use crate::passes::scene_layer::{
+    PackedLayer, SceneLayer, join_sets, layer_index, sizes, write_in_order,
+};
 use crate::passes::sh_storage;
-#[cfg(test)]
-use crate::types::Block;
-use crate::types::Gaussian;
+use crate::types::{Block, Gaussian};
 use rara_base::counted::counted;
 use rara_base::error::{Error, Result};
 use rara_base::limits;
-use rara_base::parallel::in_parallel;
 use rara_gpu::{Buffer, BufferDesc, Device, DeviceShape, Location, Recorder, WriteOnly};
 use rara_scene::camera::Camera;
 use rara_scene::clip::Clip;
 use rara_scene::precision::ShFormat;
-use rara_scene::{LayerState, Scene, check_clip, sh_coefficients};
+use rara_scene::{Gaussians, LayerState, Scene, check_clip, sh_coefficients};
 
-/// A scene's Gaussians in device memory. A clone shares that memory, and has states and clips of its layers of its own.
+/// A scene's Gaussians in device memory. A clone shares that memory, and has states and clips of its layers of its own. Once the
+/// Gaussians of a layer were replaced, only the scene that they were replaced in can be drawn, and its later clones.
 #[derive(Debug, Clone)]
 pub struct SceneBuffers {
-    /// No other scene of this process has it.
+    /// No other contents of a scene of this process have it.
     pub(crate) id: u64,
+    /// The number of what the memory holds, which clones share.
+    held: Arc<AtomicU64>,
     pub(crate) gaussians: Buffer,
     pub(crate) sh: Buffer,
     pub(crate) blocks: Buffer,
@@ -48,8 +51,6 @@ static CHANGES: AtomicU64 = AtomicU64::new(0);
 
 /// Gaussians converted at a time while uploading, so that the scene is never in memory a third time.
 const UPLOAD_CHUNK: usize = 1 << 16;
-/// Gaussians that a thread writes at a time: few enough to stay in the processor's cache.
-const WRITE_CHUNK: usize = 1 << 10;
 
 impl SceneBuffers {
     /// Uploads a scene, Gaussians or [layers](Scene) of them, its spherical harmonics stored as `format` says, in chunks,
@@ -64,19 +65,153 @@ impl SceneBuffers {
         let (mut buffers, packed) = Self::allocate(device, scene, format)?;
         for mut layer in packed {
             layer.pack_in_place();
-            let [gaussians, sh, blocks] = layer.offsets();
-            let [gaussian_bytes, sh_bytes] = layer.bytes_each();
-            let (order, target) = (&layer.order[..], (&mut buffers.gaussians, gaussians));
-            upload_in_order(device, target, (order, gaussian_bytes), |i, out| {
-                out.push(layer.gaussian(i));
-            })?;
-            let target = (&mut buffers.sh, sh);
-            upload_in_order(device, target, (order, sh_bytes), |i, out| {
-                layer.append_sh(i, out);
-            })?;
-            device.upload(&buffers.blocks, blocks, cast_slice(&layer.blocks))?;
+            buffers.write_layer(device, &layer)?;
         }
         Ok(buffers)
+    }
+
+    /// Writes a layer to its place, and waits for it.
+    fn write_layer(&mut self, device: &Device, layer: &PackedLayer<'_>) -> Result<()> {
+        let [gaussians, sh, blocks] = layer.offsets();
+        let [gaussian_bytes, sh_bytes] = layer.bytes_each();
+        let (order, target) = (&layer.order[..], (&mut self.gaussians, gaussians));
+        upload_in_order(device, target, (order, gaussian_bytes), |i, out| {
+            out.push(layer.gaussian(i));
+        })?;
+        let target = (&mut self.sh, sh);
+        upload_in_order(device, target, (order, sh_bytes), |i, out| {
+            layer.append_sh(i, out);
+        })?;
+        device.upload(&self.blocks, blocks, cast_slice(&layer.blocks))
+    }
+
+    /// Replaces the Gaussians of a layer, of the number that it has in [`layers`](Self::layers), by as many or fewer than it was
+    /// uploaded with ([`SceneLayer::room`]), and waits for it. Nothing of the other layers is touched, and the layer keeps its
+    /// name, state and clip. A frame draws the same as with a scene that was uploaded with these Gaussians; their numbers
+    /// ([`Pick`](crate::Pick)) are the first ones of the layer.
+    ///
+    /// The host has waited for all frames that show the scene. A frame that was configured before, and a [`Cut`](crate::Cut), are
+    /// configured anew.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] for a number that no layer has, for more Gaussians than the layer has room for or of a higher degree than
+    /// the scene's, for Gaussians in linear light beside others that are not, and for a layer that is a
+    /// [part](crate::Layer::part) of divided Gaussians.
+    pub fn replace_layer(&mut self, index: usize, gaussians: &Gaussians) -> Result<()> {
+        let device = self.gaussians.device().clone();
+        let replaced = self.replaced(index, gaussians)?;
+        let packed = self.packed(index, gaussians)?;
+        self.hold(index, replaced, &packed);
+        self.write_layer(&device, &packed)
+    }
+
+    /// Does what [`replace_layer`](Self::replace_layer) does by the host's own means, as [`upload_with`](Self::upload_with)
+    /// does: writes the layer alone into the host's staging memory and records the copies. Nothing waits: frames that were
+    /// submitted before show the layer as it was, those that are configured afterwards as it is.
+    ///
+    /// **Synchronisation**, **lifetimes**: as for [`upload_with`](Self::upload_with).
+    ///
+    /// # Safety
+    /// As for [`upload_with`](Self::upload_with).
+    ///
+    /// # Errors
+    /// Those of [`replace_layer`](Self::replace_layer), and [`Error::Invalid`] where the staging memory is shorter than
+    /// [`layer_staging_bytes`](Self::layer_staging_bytes); nothing has been recorded then, and the scene is as it was.
+    pub unsafe fn replace_layer_with(
+        &mut self,
+        cmd: vk::CommandBuffer,
+        staging: Staging<'_>,
+        index: usize,
+        gaussians: &Gaussians,
+    ) -> Result<()> {
+        let replaced = self.replaced(index, gaussians)?;
+        staging.check(
+            self.layer_staging_bytes(index, gaussians.len() as u32),
+            "layer_staging_bytes",
+        )?;
+        let packed = self.packed(index, gaussians)?;
+        let sizes = packed.sizes();
+        let [gaussian_bytes, sh_bytes, _] = sizes;
+        let offset = staging.offset;
+        packed.write(
+            staging.bytes,
+            [0, gaussian_bytes, gaussian_bytes + sh_bytes],
+        );
+        // SAFETY: the caller vouches for `cmd`, and keeps the buffers alive until it has executed.
+        unsafe { self.copy(cmd, (staging.buffer, offset), (packed.offsets(), sizes)) };
+        self.hold(index, replaced, &packed);
+        Ok(())
+    }
+
+    /// Bytes of staging memory that [`replace_layer_with`](Self::replace_layer_with) needs for so many Gaussians in place of
+    /// those of a layer; 0 for a number that no layer has.
+    pub fn layer_staging_bytes(&self, index: usize, gaussians: u32) -> u64 {
+        let Some(layer) = self.layers.get(index) else {
+            return 0;
+        };
+        let words = sh_storage::words(self.sh_format, 3 * sh_coefficients(self.sh_degree));
+        let each = size_of::<Gaussian>() + words * size_of::<u32>();
+        let blocks = layer.block_end() - layer.first_block;
+        u64::from(gaussians) * each as u64 + u64::from(blocks) * size_of::<Block>() as u64
+    }
+
+    /// A layer with other Gaussians, and the sample of the scene with it.
+    fn replaced(&self, index: usize, gaussians: &Gaussians) -> Result<(SceneLayer, PairSample)> {
+        let layer = self.layer(index)?;
+        let (name, room, count) = (layer.name(), layer.room(), gaussians.len());
+        let refuse = |what: String| Err(Error::Invalid(format!("layer '{name}' {what}")));
+        if count > room as usize {
+            return refuse(format!(
+                "was uploaded with {}, so that it has no room for {count}: upload the scene",
+                counted(room, "Gaussian")
+            ));
+        }
+        if gaussians.sh_degree() > self.sh_degree {
+            return refuse(format!(
+                "cannot have spherical harmonics of degree {}, as its scene was uploaded with degree {}: lower the degree or \
+                 upload the scene",
+                gaussians.sh_degree(),
+                self.sh_degree
+            ));
+        }
+        let others = self.layers.iter().enumerate();
+        let mut others = others.filter(|(at, other)| *at != index && other.gaussians() > 0);
+        let linear = gaussians.training().linear;
+        if count > 0 && others.any(|(_, other)| other.training().linear != linear) {
+            return refuse(
+                "cannot have colours of another light than the other layers: linear light is blended in linear light".into(),
+            );
+        }
+        let sample = self.sample.with(index, gaussians, self.count as usize);
+        Ok((layer.with(gaussians)?, sample))
+    }
+
+    /// The Gaussians of a layer as the device gets them in its place.
+    fn packed<'a>(&self, index: usize, gaussians: &'a Gaussians) -> Result<PackedLayer<'a>> {
+        let layer = self.layer(index)?;
+        let sh = (self.sh_format, 3 * sh_coefficients(self.sh_degree));
+        let mut packed = PackedLayer::new(
+            Cow::Borrowed(gaussians),
+            layer.first_block,
+            layer.numbers()?,
+            sh,
+        );
+        packed.fill_blocks((layer.block_end() - layer.first_block) as usize);
+        Ok(packed)
+    }
+
+    /// Notes that the memory will hold a layer with other Gaussians.
+    fn hold(
+        &mut self,
+        index: usize,
+        (layer, sample): (SceneLayer, PairSample),
+        packed: &PackedLayer<'_>,
+    ) {
+        self.reordered |= !packed.numbers().is_sorted();
+        self.sample = Arc::new(sample);
+        self.layers[index] = layer;
+        self.id = NEXT_ID.fetch_add(1, Ordering::Relaxed);
+        self.held.store(self.id, Ordering::Relaxed);
     }
 
     /// True where its colours are linear light.
@@ -124,19 +259,33 @@ impl SceneBuffers {
         Ok(())
     }
 
-    fn layer_mut(&mut self, index: usize) -> Result<&mut SceneLayer> {
-        self.changes = 1 + CHANGES.fetch_add(1, Ordering::Relaxed);
-        let count = self.layers.len();
-        self.layers.get_mut(index).ok_or_else(|| {
+    fn layer(&self, index: usize) -> Result<&SceneLayer> {
+        self.layers.get(index).ok_or_else(|| {
+            let count = self.layers.len();
             Error::Invalid(format!(
                 "there is no layer {index}: the scene has {count}, numbered from 0"
             ))
         })
     }
 
-    /// True when it was uploaded to this device.
-    pub(crate) fn is_on(&self, device: &Device) -> bool {
-        self.gaussians.device().is(device)
+    fn layer_mut(&mut self, index: usize) -> Result<&mut SceneLayer> {
+        self.layer(index)?;
+        self.changes = 1 + CHANGES.fetch_add(1, Ordering::Relaxed);
+        Ok(&mut self.layers[index])
+    }
+
+    /// Checks that it can be drawn on a device.
+    pub(crate) fn check(&self, device: &Device) -> Result<()> {
+        let refuse = |why: &str| Err(Error::Invalid(why.into()));
+        if !self.gaussians.device().is(device) {
+            return refuse("the scene was uploaded to another device than the renderer's");
+        }
+        if self.held.load(Ordering::Relaxed) != self.id {
+            return refuse(
+                "Gaussians of the scene were replaced in a clone, which shares its memory: clone that one anew",
+            );
+        }
+        Ok(())
     }
 
     /// Bytes of staging memory that [`upload_with`](Self::upload_with) needs for a scene.
@@ -172,44 +321,45 @@ impl SceneBuffers {
     ) -> Result<Self> {
         let scene = scene.into();
         let sizes = sizes(&scene, format);
-        let needed = sizes.iter().sum::<u64>();
-        if (staging.bytes.size() as u64) < needed {
-            return Err(Error::Invalid(format!(
-                "this scene needs {} of staging memory and {} were lent; SceneBuffers::staging_bytes says",
-                counted(needed, "byte"),
-                staging.bytes.size()
-            )));
-        }
+        staging.check(sizes.iter().sum(), "staging_bytes")?;
         let (buffers, packed) = Self::allocate(device, scene, format)?;
-        let [gaussians, sh, blocks] = sizes.map(|size| size as usize);
+        let [gaussians, sh, _] = sizes;
         let mut bytes = staging.bytes;
         for mut layer in packed {
             layer.pack_in_place();
             // The places between the layers hold no Gaussian, and nothing reads them.
-            let [first, second, third] = layer.offsets().map(|offset| offset as usize);
-            let [gaussian_bytes, sh_bytes] =
-                layer.bytes_each().map(|each| each * layer.order.len());
-            let target = bytes.part(first..first + gaussian_bytes);
-            write_in_order(target, &layer.order, |i, out| out.push(layer.gaussian(i)));
-            let target = bytes.part(gaussians + second..gaussians + second + sh_bytes);
-            write_in_order(target, &layer.order, |i, out| layer.append_sh(i, out));
-            bytes.write(gaussians + sh + third, cast_slice(&layer.blocks));
+            let [first, second, third] = layer.offsets();
+            let size = bytes.size();
+            layer.write(
+                bytes.part(0..size),
+                [first, gaussians + second, gaussians + sh + third],
+            );
         }
         // SAFETY: the caller vouches for `cmd`, and keeps the buffers alive until it has executed.
-        let mut recorder = unsafe { Recorder::begin(device, cmd, None) };
+        unsafe { buffers.copy(cmd, (staging.buffer, staging.offset), ([0; 3], sizes)) };
+        Ok(buffers)
+    }
+
+    /// Records the copies to places of the three buffers, of so many bytes each, which follow each other in a host's buffer.
+    ///
+    /// # Safety
+    /// As for [`upload_with`](Self::upload_with); the host's buffer holds the bytes.
+    unsafe fn copy(
+        &self,
+        cmd: vk::CommandBuffer,
+        (source, mut from): (vk::Buffer, u64),
+        (places, sizes): ([u64; 3], [u64; 3]),
+    ) {
+        let targets = [&self.gaussians, &self.sh, &self.blocks];
+        // SAFETY: the caller vouches for `cmd`, and keeps the buffers alive until it has executed.
+        let mut recorder = unsafe { Recorder::begin(self.gaussians.device(), cmd, None) };
         recorder.label("upload", |recorder| {
-            let mut from = staging.offset;
-            for (target, length) in [
-                (&buffers.gaussians, gaussians),
-                (&buffers.sh, sh),
-                (&buffers.blocks, blocks),
-            ] {
-                // SAFETY: the caller vouches for the staging buffer, whose range holds so many bytes here.
-                unsafe { recorder.copy_from(staging.buffer, from, target, length as u64) };
-                from += length as u64;
+            for (target, size) in targets.into_iter().zip(places).zip(sizes) {
+                // SAFETY: the caller vouches for the buffer, which holds so many bytes here.
+                unsafe { recorder.copy_from((source, from), target, size) };
+                from += size;
             }
         });
-        Ok(buffers)
     }
 
     /// Allocates the buffers, and packs what goes into them from each layer.
@@ -244,13 +394,15 @@ impl SceneBuffers {
         let sample = PairSample::new(&scene);
         for (layer, &numbers) in scene.into_layers().into_iter().zip(&numbers) {
             let first_block = layers.last().map_or(0, SceneLayer::block_end);
-            layers.push(SceneLayer::new(&layer, first_block));
+            layers.push(SceneLayer::new(&layer, first_block, numbers));
             let gaussians = layer.into_gaussians();
             packed.push(PackedLayer::new(gaussians, first_block, numbers, sh));
         }
         join_sets(&mut layers, &numbers);
+        let id = NEXT_ID.fetch_add(1, Ordering::Relaxed);
         let buffers = Self {
-            id: NEXT_ID.fetch_add(1, Ordering::Relaxed),
+            id,
+            held: Arc::new(id.into()),
             gaussians: gpu_only(device, "gaussians", sizes[0])?,
             sh: gpu_only(device, "sh", sizes[1])?,
             blocks: gpu_only(device, "blocks", sizes[2])?,
@@ -344,6 +496,20 @@ pub struct Staging<'a> {
     pub bytes: WriteOnly<'a>,
 }
 
+impl Staging<'_> {
+    /// Checks that it is as long as a function says.
+    fn check(&self, needed: u64, said_by: &str) -> Result<()> {
+        let lent = self.bytes.size() as u64;
+        match lent >= needed {
+            true => Ok(()),
+            false => Err(Error::Invalid(format!(
+                "this needs {} of staging memory and {lent} were lent; SceneBuffers::{said_by} says",
+                counted(needed, "byte")
+            ))),
+        }
+    }
+}
+
 /// A buffer that only the device sees.
 fn gpu_only(device: &Device, name: &str, size: u64) -> Result<Buffer> {
     device.create_buffer(&BufferDesc {
@@ -351,26 +517,6 @@ fn gpu_only(device: &Device, name: &str, size: u64) -> Result<Buffer> {
         size,
         location: Location::GpuOnly,
     })
-}
-
-/// Writes what `append` makes of each Gaussian, in an order, on all cores; of each it makes as many bytes.
-fn write_in_order<T: bytemuck::NoUninit>(
-    target: WriteOnly<'_>,
-    order: &[u32],
-    append: impl Fn(u32, &mut Vec<T>) + Sync,
-) {
-    let each = target.size() / order.len().max(1);
-    let targets = target.chunks((WRITE_CHUNK * each).max(1));
-    in_parallel(
-        order.chunks(WRITE_CHUNK).zip(targets),
-        |(numbers, mut target)| {
-            let mut packed = Vec::with_capacity(target.size() / size_of::<T>());
-            for &index in numbers {
-                append(index, &mut packed);
-            }
-            target.write(0, cast_slice(&packed));
-        },
-    );
 }
 
 /// Uploads what `append` makes of each Gaussian, so many bytes of each, in an order, to a buffer from an offset on.

@@ -10,6 +10,8 @@ use crate::passes::{block_order, sh_storage};
 use crate::types::{Block, Gaussian};
 use rara_base::error::{Error, Result, shortened};
 use rara_base::limits;
+use rara_base::parallel::in_parallel;
+use rara_gpu::WriteOnly;
 use rara_scene::clip::Clip;
 use rara_scene::placement::Placement;
 use rara_scene::precision::ShFormat;
@@ -23,6 +25,10 @@ use rara_scene::{
 pub struct SceneLayer {
     name: String,
     gaussians: u32,
+    /// How many there is room for.
+    room: u32,
+    /// The number of its first Gaussian in the scene; `None` where they are a part of others, and have any numbers.
+    first_number: Option<u32>,
     /// The layer's first block; it fills whole blocks.
     pub(super) first_block: u32,
     /// The corners of the box around its centres, in its own units.
@@ -38,12 +44,15 @@ pub struct SceneLayer {
 }
 
 impl SceneLayer {
-    /// That of a layer whose Gaussians begin with a block.
-    pub(crate) fn new(layer: &Layer<'_>, first_block: u32) -> Self {
+    /// That of a layer whose Gaussians begin with a block, and have these numbers.
+    pub(crate) fn new(layer: &Layer<'_>, first_block: u32, numbers: Numbers<'_>) -> Self {
         let corners = corners(layer.gaussians());
+        let count = layer.gaussians().len() as u32;
         Self {
             name: layer.name().into(),
-            gaussians: layer.gaussians().len() as u32,
+            gaussians: count,
+            room: count,
+            first_number: numbers.set().is_none().then(|| numbers.of(0)),
             first_block,
             box_around: corners,
             corners,
@@ -52,6 +61,37 @@ impl SceneLayer {
             state: layer.state(),
             clip: layer.clip().cloned(),
         }
+    }
+
+    /// The same with other Gaussians.
+    pub(super) fn with(&self, gaussians: &Gaussians) -> Result<Self> {
+        self.numbers()?;
+        let corners = corners(gaussians);
+        Ok(Self {
+            gaussians: gaussians.len() as u32,
+            box_around: corners,
+            corners,
+            origin: gaussians.origin(),
+            training: gaussians.training(),
+            ..self.clone()
+        })
+    }
+
+    /// The numbers of its Gaussians, if they follow each other.
+    pub(super) fn numbers(&self) -> Result<Numbers<'static>> {
+        let Some(first) = self.first_number else {
+            return Err(Error::Invalid(format!(
+                "the Gaussians of layer '{}' are a part of others, whose numbers they have: upload the scene",
+                self.name
+            )));
+        };
+        Ok(Numbers::of_whole(first))
+    }
+
+    /// The most Gaussians that can take the place of its own
+    /// ([`SceneBuffers::replace_layer`](super::SceneBuffers::replace_layer)): as many as it was uploaded with.
+    pub fn room(&self) -> u32 {
+        self.room
     }
 
     /// The name that it was uploaded with.
@@ -107,7 +147,7 @@ impl SceneLayer {
 
     /// The first block behind it.
     pub(super) fn block_end(&self) -> u32 {
-        self.first_block + self.gaussians.div_ceil(limits::BLOCK_SIZE)
+        self.first_block + self.room.div_ceil(limits::BLOCK_SIZE)
     }
 }
 
@@ -216,6 +256,28 @@ impl<'a> PackedLayer<'a> {
         }
     }
 
+    /// Adds blocks that hold nothing, up to so many in all.
+    pub(super) fn fill_blocks(&mut self, count: usize) {
+        self.blocks.resize(count, block_order::EMPTY);
+    }
+
+    /// Bytes of its Gaussians, their spherical harmonics and its blocks.
+    pub(super) fn sizes(&self) -> [u64; 3] {
+        let [gaussians, sh] = self.bytes_each().map(|each| each * self.order.len());
+        [gaussians, sh, size_of_val(&self.blocks[..])].map(|bytes| bytes as u64)
+    }
+
+    /// Writes them to three places.
+    pub(super) fn write(&self, mut to: WriteOnly<'_>, places: [u64; 3]) {
+        let [gaussians, sh, blocks] = places.map(|place| place as usize);
+        let [gaussian_bytes, sh_bytes, _] = self.sizes().map(|size| size as usize);
+        let target = to.part(gaussians..gaussians + gaussian_bytes);
+        write_in_order(target, &self.order, |i, out| out.push(self.gaussian(i)));
+        let target = to.part(sh..sh + sh_bytes);
+        write_in_order(target, &self.order, |i, out| self.append_sh(i, out));
+        to.write(blocks, cast_slice(&self.blocks));
+    }
+
     /// Bytes of a Gaussian, and of its spherical harmonics.
     pub(super) fn bytes_each(&self) -> [usize; 2] {
         let words = sh_storage::words(self.sh.0, self.sh.1);
@@ -276,4 +338,27 @@ impl<'a> PackedLayer<'a> {
             sh_storage::pack(format, &all[..numbers], out);
         }
     }
+}
+
+/// Gaussians that a thread writes at a time: few enough to stay in the processor's cache.
+const WRITE_CHUNK: usize = 1 << 10;
+
+/// Writes what `append` makes of each Gaussian, in an order, on all cores; of each it makes as many bytes.
+pub(super) fn write_in_order<T: bytemuck::NoUninit>(
+    target: WriteOnly<'_>,
+    order: &[u32],
+    append: impl Fn(u32, &mut Vec<T>) + Sync,
+) {
+    let each = target.size() / order.len().max(1);
+    let targets = target.chunks((WRITE_CHUNK * each).max(1));
+    in_parallel(
+        order.chunks(WRITE_CHUNK).zip(targets),
+        |(numbers, mut target)| {
+            let mut packed = Vec::with_capacity(target.size() / size_of::<T>());
+            for &index in numbers {
+                append(index, &mut packed);
+            }
+            target.write(0, cast_slice(&packed));
+        },
+    );
 }

@@ -5,7 +5,6 @@ use std::sync::Arc;
 use ash::vk;
 
 use super::choose;
-use super::cut::check_device;
 use super::desc::ColorSpace;
 use super::frame::{FrameCut, FrameState};
 use super::frames::{Decision, RecordedFrame};
@@ -120,7 +119,7 @@ impl Renderer {
             camera: &request.camera.in_scene(&self.placement),
             ..*request
         };
-        check_device(request.scene, &self.device)?;
+        request.scene.check(&self.device)?;
         // Of a cut the layers are as they were when it was configured.
         let scene = match request.kept {
             Kept::Clip(_) => request.scene,

@@ -136,7 +136,7 @@ impl Cut {
         clip: &Clip,
         settings: &Settings,
     ) -> Result<()> {
-        check_device(scene, &self.device)?;
+        scene.check(&self.device)?;
         let clip = clip.in_scene(&self.placement);
         let mut plan = CutPlan::new(scene.facts(self.device.shape()), None, &clip, settings)?;
         if let Some(had) = self.configured.back_mut()
@@ -287,15 +287,5 @@ impl CutState {
     pub(super) fn has_found(&self, scene: u64, plan: &CutPlan) -> bool {
         let found = self.found.as_ref();
         found.is_some_and(|found| found.are_of(scene, plan))
-    }
-}
-
-/// Checks that a scene is where it is to be drawn.
-pub(crate) fn check_device(scene: &SceneBuffers, device: &Device) -> Result<()> {
-    match scene.is_on(device) {
-        true => Ok(()),
-        false => Err(Error::Invalid(
-            "the scene was uploaded to another device than the renderer's".into(),
-        )),
     }
 }

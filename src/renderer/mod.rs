@@ -36,7 +36,6 @@ mod tests;
 mod working;
 
 pub use cut::Cut;
-pub(crate) use cut::check_device;
 pub use desc::{ColorSpace, DepthDesc, ExpectedDepthDesc, RendererDesc};
 pub use frame::{ConfiguredFrame, PreparedFrame};
 pub(crate) use frames::RecordedFrame;

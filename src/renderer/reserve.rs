@@ -17,7 +17,7 @@ use rara_base::limits;
 use rara_scene::camera::Camera;
 use rara_scene::clip::Clip;
 use rara_scene::settings::Settings;
-use rara_scene::{Gaussians, Layer};
+use rara_scene::{Gaussians, Layer, Numbers};
 
 impl Renderer {
     /// Compiles the pipelines and allocates the working memory of all frames within limits: none of them then compiles or
@@ -148,7 +148,7 @@ impl Renderer {
         act: &mut dyn FnMut(&EyePlan) -> Result<()>,
     ) -> Result<()> {
         let nothing = Gaussians::default();
-        let layer = SceneLayer::new(&Layer::new("", &nothing), 0);
+        let layer = SceneLayer::new(&Layer::new("", &nothing), 0, Numbers::of_whole(0));
         let layers = [layer.clone(), layer];
         let clips = limits.clips(self.device.shape())?;
         for settings in &limits.settings {

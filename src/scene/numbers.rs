@@ -14,7 +14,8 @@ pub struct Numbers<'a> {
 }
 
 impl<'a> Numbers<'a> {
-    pub(super) fn of_whole(first: u32) -> Self {
+    /// Numbers that follow each other.
+    pub fn of_whole(first: u32) -> Self {
         Self {
             first,
             in_set: None,

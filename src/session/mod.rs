@@ -8,7 +8,6 @@ use ash::vk;
 use crate::passes::{SceneBuffers, SceneLayer, SplatColours};
 use crate::renderer::{
     ColorSpace, ConfiguredFrame, FrameRequest, Kept, Outcome, Renderer, RendererDesc, Submission,
-    check_device,
 };
 use crate::stats::FrameStats;
 use crate::trace::{self, Trace};
@@ -94,7 +93,7 @@ impl Session {
 
     /// Takes a scene of the device in place of the one before.
     fn show(&mut self, scene: SceneBuffers) -> Result<()> {
-        check_device(&scene, &self.device)?;
+        scene.check(&self.device)?;
         self.renderer.forget();
         self.scene = Some(scene);
         Ok(())

@@ -7,8 +7,8 @@ use crate::common;
 use rara::ash::vk;
 use rara::scene::{Kind, generate};
 use rara::{
-    Clip, ClipOp, ConfiguredFrame, Gaussians, Picture, Raster, Renderer, RendererDesc,
-    SceneBuffers, Settings, ShFormat, Staging,
+    Clip, ClipOp, ConfiguredFrame, Cut, Gaussians, Layer, Picture, Raster, Renderer, RendererDesc,
+    Scene, SceneBuffers, Settings, ShFormat, Staging,
 };
 use rara_gpu::{Bindings, Buffer, BufferDesc, Device, Location};
 
@@ -166,6 +166,134 @@ fn scenes_and_clips_change_while_frames_are_in_flight() {
         drop(device);
         assert_eq!(host.close(), Vec::<String>::new());
     }
+}
+
+fn layers(parts: [&Gaussians; 3]) -> Scene<'_> {
+    parts
+        .map(|part| Layer::new("part", part))
+        .into_iter()
+        .collect()
+}
+
+/// The memory that a host stages a layer in.
+fn lend(device: &Device, size: u64) -> Buffer {
+    let desc = BufferDesc {
+        name: "host's staging",
+        size: size.max(1),
+        location: Location::Upload,
+    };
+    device.create_buffer(&desc).expect("a buffer")
+}
+
+/// A layer of a scene gets other Gaussians in each frame, while the frame before is in flight; the pictures are, to the byte,
+/// those of scenes that were uploaded as a whole.
+#[test]
+fn a_layer_is_replaced_while_frames_are_in_flight() {
+    let first = generate(Kind::General, 700, 1);
+    let last = generate(Kind::Layers, 900, 3);
+    // As many as there is room for, fewer, few, none, and again many.
+    let middles = [1_500, 1_100, 3, 0, 700, 1_500].map(|count| generate(Kind::Strands, count, 2));
+    let camera = common::views(&first, 1, (VIEW.width, VIEW.height))[0];
+    let clip = common::clip(&first, 1, ClipOp::And);
+    let settings =
+        |at: usize| Settings::default().raster([Raster::Tiles, Raster::Quad][at / 2 % 2]);
+    let (mut host, device) = open(true);
+    let frames = middles.len();
+    let [mut pictures, mut truth] = [Vec::new(), Vec::new()];
+    for is_whole in [false, true] {
+        let desc = RendererDesc::new(FORMAT)
+            .reuse(!is_whole)
+            .frames_in_flight(FRAMES as u32);
+        let mut renderer = Renderer::new(&device, desc).expect("a renderer");
+        let drawn = if is_whole { &mut truth } else { &mut pictures };
+        let upload = |middle| {
+            let scene = layers([&first, middle, &last]);
+            SceneBuffers::upload(&device, scene, ShFormat::Packed).expect("uploads")
+        };
+        let mut replaced = upload(&middles[0]);
+        let mut kept = Vec::new();
+        for (at, middle) in middles.iter().enumerate() {
+            // The first ones have nothing of this renderer to wait for.
+            let pixels = host.wait().expect("waits");
+            drawn.extend(pixels.filter(|_| at >= FRAMES));
+            let whole = is_whole.then(|| upload(middle));
+            let cmd = host.begin().expect("begins");
+            if whole.is_none() && at > 0 {
+                let size = replaced.layer_staging_bytes(1, middle.len() as u32);
+                let mut memory = lend(&device, size);
+                let staging = Staging {
+                    buffer: memory.handle(),
+                    offset: 0,
+                    bytes: memory.mapped_mut(),
+                };
+                // SAFETY: `cmd` is recording outside rendering; memory is kept until all is waited for.
+                let done = unsafe { replaced.replace_layer_with(cmd, staging, 1, middle) };
+                done.expect("there is room");
+                kept.push((None, Some(memory)));
+            }
+            let scene = whole.as_ref().unwrap_or(&replaced);
+            let settings = settings(at);
+            let configured = renderer.configure(scene, &camera, &clip, &settings);
+            record(&mut host, &mut renderer, cmd, scene, configured);
+            kept.push((whole, None));
+        }
+        drawn.push(host.wait_for_all().expect("waits"));
+        // What wait_for_all returns is the last one.
+        assert_eq!(drawn.len(), frames - FRAMES + 1);
+        drop((renderer, replaced, kept));
+    }
+    for (at, (picture, truth)) in pictures.iter().zip(&truth).enumerate() {
+        assert!(picture == truth, "frame {at}");
+    }
+    assert!(pictures[0] != pictures[1], "a layer changes the picture");
+    drop(device);
+    assert_eq!(host.close(), Vec::<String>::new());
+}
+
+/// What a layer has no place for is refused, and so is what still shows the Gaussians that were replaced.
+#[test]
+fn replaced_layers_have_room_and_a_kind() {
+    let parts = [300, 20, 10].map(|count| generate(Kind::General, count, 1));
+    let mut headless = common::headless();
+    let device = headless.device().clone();
+    let [one, two, three] = &parts;
+    let mut scene =
+        SceneBuffers::upload(&device, layers([one, two, three]), ShFormat::Float).expect("uploads");
+    let before = scene.clone();
+    let mut renderer = Renderer::new(&device, RendererDesc::new(FORMAT)).expect("a renderer");
+    let mut cut = Cut::new(&renderer);
+    let (clip, usual) = (common::clip(one, 1, ClipOp::And), Settings::default());
+    cut.configure(&scene, &clip, &usual).expect("a cut");
+    let mut linear = two.clone();
+    let training = linear.training().linear(true);
+    linear.set_training(training).expect("it can be drawn");
+    for (index, gaussians, says) in [
+        (1, one, "has no room for 300"),
+        (3, two, "no layer 3"),
+        (1, &linear, "light"),
+    ] {
+        let refused = scene.replace_layer(index, gaussians).expect_err(says);
+        assert!(refused.to_string().contains(says), "{refused}");
+    }
+    assert_eq!(scene.layers()[0].room(), 300);
+    scene.replace_layer(0, two).expect("there is room");
+    assert_eq!(scene.layers()[0].gaussians(), 20);
+    assert_eq!(scene.layers()[0].room(), 300);
+    let camera = common::views(one, 1, (64, 64))[0];
+    let stale = renderer.configure(&before, &camera, &clip, &usual);
+    let stale = stale.expect_err("its Gaussians are gone").to_string();
+    assert!(stale.contains("replaced in a clone"), "{stale}");
+    let stale = renderer.configure(&scene, &camera, &cut, &usual);
+    let stale = stale.expect_err("another scene's cut").to_string();
+    assert!(stale.contains("another scene"), "{stale}");
+    let mut draw = |scene: SceneBuffers| {
+        headless.show(scene).expect("of this device");
+        headless.render(&camera, &clip, &usual).expect("renders");
+        headless.picture().expect("reads back")
+    };
+    let ours = draw(scene);
+    let whole = SceneBuffers::upload(&device, layers([two, two, three]), ShFormat::Float);
+    assert!(ours == draw(whole.expect("uploads")));
 }
 
 /// Nothing leaks where the device is a host's, two frames are in flight and scenes come through its own staging memory.

@@ -9,11 +9,11 @@ use crate::passes::splat_colours::SplatColours;
 use crate::passes::weight::Weight;
 use rara_scene::clip::{Clip, ClipOp, Plane};
 use rara_scene::settings::Mode;
-use rara_scene::{Kind, Layer, generate};
+use rara_scene::{Kind, Layer, Numbers, generate};
 
 fn plan(mode: Mode, planes: usize) -> EyePlan {
     let thousand = generate(Kind::General, 1000, 1);
-    let layer = SceneLayer::new(&Layer::new("one", &thousand), 0);
+    let layer = SceneLayer::new(&Layer::new("one", &thousand), 0, Numbers::of_whole(0));
     let scene = SceneFacts {
         layers: &[layer],
         gaussians: 1000,

@@ -34,6 +34,7 @@ chapters! {
     frame,
     glossary,
     gpu,
+    hosts,
     library,
     modes,
     paper shows "report",

@@ -96,7 +96,7 @@ impl SceneBuffers {
     /// # Errors
     /// [`Error::Invalid`] for a number that no layer has, for more Gaussians than the layer has room for or of a higher degree than
     /// the scene's, for Gaussians in linear light beside others that are not, and for a layer that is a
-    /// [part](crate::Layer::part) of divided Gaussians.
+    /// part of Gaussians that a selection has divided.
     pub fn replace_layer(&mut self, index: usize, gaussians: &Gaussians) -> Result<()> {
         let device = self.gaussians.device().clone();
         let replaced = self.replaced(index, gaussians)?;

@@ -42,7 +42,7 @@ target_link_libraries(static rara::static)
 "#;
 
 /// Installs the libraries that cargo has put beside this test.
-fn installed(folder: &Folder) -> std::path::PathBuf {
+pub(crate) fn installed(folder: &Folder) -> std::path::PathBuf {
     let prefix = folder.join("prefix of mine"); // build systems have to quote it
     let mut install = Command::new(root().join("tools/install-c"));
     run(
@@ -103,7 +103,7 @@ fn what_is_missing_is_said_before_anything_is_made() {
 }
 
 /// True where a tool starts; says what is not tested where it does not.
-fn has(tool: &str) -> bool {
+pub(crate) fn has(tool: &str) -> bool {
     let found = Command::new(tool).arg("--version").output().is_ok();
     if !found {
         eprintln!(
@@ -161,6 +161,25 @@ fn cmake_finds_what_was_installed() {
     }
 }
 
+/// What pkg-config says of the installed library.
+pub(crate) fn flags(library: &Path, of: &[&str]) -> String {
+    let output = Command::new("pkg-config")
+        .args(of)
+        .arg("rara")
+        .env("PKG_CONFIG_PATH", library.join("pkgconfig"))
+        .output()
+        .expect("it starts");
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    String::from_utf8(output.stdout)
+        .expect("UTF-8")
+        .trim()
+        .to_owned()
+}
+
 #[test]
 fn pkg_config_finds_what_was_installed() {
     let Some(compiler) = compiler("no program was built with what tools/install-c installs") else {
@@ -172,23 +191,7 @@ fn pkg_config_finds_what_was_installed() {
     let folder = Folder::new("c-pkg-config");
     let prefix = installed(&folder);
     let library = prefix.join("lib");
-    let flags = |of: &[&str]| {
-        let output = Command::new("pkg-config")
-            .args(of)
-            .arg("rara")
-            .env("PKG_CONFIG_PATH", library.join("pkgconfig"))
-            .output()
-            .expect("it starts");
-        assert!(
-            output.status.success(),
-            "{}",
-            String::from_utf8_lossy(&output.stderr)
-        );
-        String::from_utf8(output.stdout)
-            .expect("UTF-8")
-            .trim()
-            .to_owned()
-    };
+    let flags = |of: &[&str]| flags(&library, of);
     assert_eq!(flags(&["--modversion"]), env!("CARGO_PKG_VERSION"));
     let program = folder.join("program.c");
     std::fs::write(&program, PROGRAM).expect("a temporary file");

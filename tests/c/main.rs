@@ -1,4 +1,4 @@
-//! `rara.h` and the library behind it: the header itself, what a host does wrong and right, a host in C++,
+//! `rara.h` and the library behind it: the header itself, what a host does wrong and right, hosts in C++ and in C,
 //! what tools/install-c installs, and the log.
 
 #[path = "../common/canvas/mod.rs"]
@@ -7,6 +7,7 @@ mod compiler;
 #[path = "../common/folder.rs"]
 mod folder;
 
+mod c_host;
 mod calls;
 mod clips;
 mod cpp_host;

@@ -82,12 +82,16 @@ pub struct RaraAdoptDesc {
     pub allocator_user: *mut c_void,
     /// True when the feature pipelineStatisticsQuery was enabled. Default: false.
     pub pipeline_statistics: vk::Bool32,
+    /// False when the feature bufferDeviceAddress was not enabled: RARA_BINDINGS_BOUND takes the place of the other ways, and
+    /// needs `push_descriptor`. Default: true, which counts where the device has the feature.
+    pub buffer_device_address: vk::Bool32,
 }
 
 versioned!(RaraAdoptDesc);
 
 const NOTHING: RaraAdoptDesc = RaraAdoptDesc {
     api_version: vk::API_VERSION_1_3,
+    buffer_device_address: vk::TRUE,
     ..Versioned::BLANK
 };
 
@@ -116,7 +120,7 @@ impl Drop for Release {
     }
 }
 
-/// Enables nothing optional and sets all handles to null; the host replaces them. `desc_size` is sizeof *desc.
+/// Enables nothing optional but bufferDeviceAddress, and sets all handles to null; the host replaces them. `desc_size` is sizeof *desc.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_adopt_desc_default(
     desc: *mut RaraAdoptDesc,
@@ -150,6 +154,7 @@ pub unsafe extern "C" fn rara_device_adopt(
         let version = desc.api_version;
         let lender = Lender::new(desc.allocate, desc.free, desc.allocator_user)?;
         let adopt = AdoptDesc::new(version, instance, desc.physical_device, device, queue)
+            .buffer_device_address(desc.buffer_device_address != 0)
             .mesh_shader(desc.mesh_shader != 0)
             .push_descriptor(desc.push_descriptor != 0)
             .full_subgroups(desc.full_subgroups != 0)

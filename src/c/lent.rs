@@ -41,7 +41,7 @@ pub struct RaraMemoryRequest {
 pub struct RaraMemory {
     /// Its size in the library, which may be larger than in the host's header; the host leaves it as it is.
     pub struct_size: usize,
-    /// The memory, allocated with VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT.
+    /// The memory, allocated with VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT where bufferDeviceAddress is enabled.
     pub memory: vk::DeviceMemory,
     /// The offset of the part in it, bytes.
     pub offset: u64,

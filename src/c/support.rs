@@ -12,8 +12,8 @@ use crate::device::{PFN_vkGetInstanceProcAddr, load_instance};
 pub const RARA_MAX_EXTENSIONS: usize = 8;
 
 /// The features of a suitable physical device beyond the requirements. Required are Vulkan 1.3, or 1.2 with
-/// VK_KHR_synchronization2 and VK_KHR_dynamic_rendering, the features bufferDeviceAddress, synchronization2 and
-/// dynamicRendering, and a queue family with graphics and compute.
+/// VK_KHR_synchronization2 and VK_KHR_dynamic_rendering, the features synchronization2 and dynamicRendering,
+/// bufferDeviceAddress or VK_KHR_push_descriptor, and a queue family with graphics and compute.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct RaraSupport {
@@ -46,6 +46,9 @@ pub struct RaraSupport {
     /// pipelineStatisticsQuery of VkPhysicalDeviceFeatures. Optional: RaraRendererDesc::statistics needs it, and a host that
     /// wants them enables it, as rara_support_features does not.
     pub pipeline_statistics: vk::Bool32,
+    /// bufferDeviceAddress. Without it RARA_BINDINGS_BOUND is the only way to reach buffers. A host that leaves it disabled
+    /// sets this to false before rara_support_features, and RaraAdoptDesc::buffer_device_address too.
+    pub buffer_device_address: vk::Bool32,
 }
 
 versioned!(RaraSupport);
@@ -71,12 +74,14 @@ impl RaraSupport {
             api_version: support.api_version,
             full_subgroups: (support.full_subgroups[1] > 0).into(),
             pipeline_statistics: support.pipeline_statistics.into(),
+            buffer_device_address: support.buffer_device_address.into(),
         }
     }
 
     /// As much of it as features depend on.
     fn support(&self) -> Support {
         let mut support = Support::default();
+        support.buffer_device_address = self.buffer_device_address != 0;
         support.mesh_shader = self.mesh_shader != 0;
         // Whether there are any sizes matters, and not which.
         support.full_subgroups = [u32::from(self.full_subgroups != 0); 2];
@@ -112,8 +117,8 @@ pub unsafe extern "C" fn rara_check(
 
 /// Sets the features that rara needs in the host's own structs: those in the pNext chain of its VkDeviceCreateInfo,
 /// whichever of Vulkan's structs they are in. No other field is touched. RARA_ERROR_INVALID names a feature for which the
-/// chain has no struct; those that are optional may be missing, since a host can do without: meshShader and taskShader,
-/// subgroupSizeControl and computeFullSubgroups.
+/// chain has no struct; these may be missing, since a host can do without: meshShader and taskShader, subgroupSizeControl and
+/// computeFullSubgroups.
 ///
 /// # Safety
 /// `support` was filled by rara_check; `p_next` is null, or a chain of structs that may be changed.
@@ -123,7 +128,10 @@ pub unsafe extern "C" fn rara_support_features(
     p_next: *mut c_void,
 ) -> RaraResult {
     guard(|| {
-        let default = RaraSupport::from_support(&Support::default());
+        let default = RaraSupport {
+            buffer_device_address: vk::TRUE, // of hosts that do not know the field
+            ..RaraSupport::from_support(&Support::default())
+        };
         let support = read(support, default, "support")?;
         support.support().set_features(p_next)
     })

@@ -63,6 +63,9 @@ pub struct AdoptDesc {
     pub queue: vk::Queue,
     /// The queue's family.
     pub queue_family: u32,
+    /// False when `bufferDeviceAddress` was not enabled: [`Bindings::Bound`](super::Bindings::Bound) takes the place of the
+    /// other ways, and needs [`push_descriptor`](Self::push_descriptor). It counts where the device has the feature.
+    pub buffer_device_address: bool,
     /// True when `VK_EXT_mesh_shader` and its features were enabled.
     pub mesh_shader: bool,
     /// True when `VK_KHR_push_descriptor` was enabled.
@@ -75,8 +78,8 @@ pub struct AdoptDesc {
     pub pipeline_statistics: bool,
     /// The cache in which compiled pipelines are looked up and kept; null for none.
     pub pipeline_cache: vk::PipelineCache,
-    /// The source of all device memory, made for this device and with `buffer_device_address`. `None` means an allocator of
-    /// rara's own. It is locked while a buffer or an image is made or destroyed, never by
+    /// The source of all device memory, made for this device and with `buffer_device_address` where that is enabled. `None`
+    /// means an allocator of rara's own. It is locked while a buffer or an image is made or destroyed, never by
     /// `Renderer::prepare` or a draw.
     pub allocator: Option<Arc<Mutex<Allocator>>>,
     /// The source of all device memory in place of an allocator, for a host whose own is no `gpu_allocator`. `None` where there
@@ -90,6 +93,7 @@ pub struct AdoptDesc {
 }
 
 setters!(AdoptDesc {
+    buffer_device_address: bool,
     mesh_shader: bool,
     push_descriptor: bool,
     full_subgroups: bool,
@@ -103,7 +107,8 @@ setters!(AdoptDesc {
 });
 
 impl AdoptDesc {
-    /// A device with nothing optional enabled, no pipeline cache, and an allocator of rara's own.
+    /// A device with `bufferDeviceAddress` where it has that and nothing else that is optional, no pipeline cache, and an
+    /// allocator of rara's own.
     pub fn new(
         api_version: u32,
         instance: ash::Instance,
@@ -118,6 +123,7 @@ impl AdoptDesc {
             device,
             queue,
             queue_family,
+            buffer_device_address: true,
             mesh_shader: false,
             push_descriptor: false,
             full_subgroups: false,

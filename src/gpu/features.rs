@@ -14,7 +14,7 @@ impl Support {
     pub fn features(&self) -> Features {
         Features {
             buffer_device_address: vk::PhysicalDeviceBufferDeviceAddressFeatures::default()
-                .buffer_device_address(true),
+                .buffer_device_address(self.buffer_device_address),
             synchronization2: vk::PhysicalDeviceSynchronization2Features::default()
                 .synchronization2(true),
             dynamic_rendering: vk::PhysicalDeviceDynamicRenderingFeatures::default()
@@ -47,7 +47,7 @@ impl Support {
         let found = unsafe { self.set_in(p_next) };
         for (found, feature, holder) in [
             (
-                found.address,
+                found.address || !self.buffer_device_address,
                 "bufferDeviceAddress",
                 "VkPhysicalDeviceVulkan12Features or VkPhysicalDeviceBufferDeviceAddressFeatures",
             ),
@@ -78,19 +78,19 @@ impl Support {
     unsafe fn set_in(&self, p_next: *mut c_void) -> OfferedFeatures {
         use vk::StructureType as Type;
         let mut found = OfferedFeatures::default();
-        let full_subgroups = self.full_subgroups[1] > 0;
+        let (addresses, full_subgroups) = (self.buffer_device_address, self.full_subgroups[1] > 0);
         let mut next = p_next.cast::<vk::BaseOutStructure<'_>>();
         // SAFETY: each struct of the caller's chain begins with its type, which says what it is, and with a pointer to the
         // next one.
         unsafe {
             while !next.is_null() {
                 match (*next).s_type {
-                    Type::PHYSICAL_DEVICE_VULKAN_1_2_FEATURES => {
+                    Type::PHYSICAL_DEVICE_VULKAN_1_2_FEATURES if addresses => {
                         let all = &mut *next.cast::<vk::PhysicalDeviceVulkan12Features<'_>>();
                         all.buffer_device_address = vk::TRUE;
                         found.address = true;
                     }
-                    Type::PHYSICAL_DEVICE_BUFFER_DEVICE_ADDRESS_FEATURES => {
+                    Type::PHYSICAL_DEVICE_BUFFER_DEVICE_ADDRESS_FEATURES if addresses => {
                         let one = next.cast::<vk::PhysicalDeviceBufferDeviceAddressFeatures<'_>>();
                         (*one).buffer_device_address = vk::TRUE;
                         found.address = true;
@@ -160,7 +160,7 @@ impl Support {
         let found = unsafe { self.set_in(info.p_next.cast_mut()) };
         let mut info = info;
         ours.unchain();
-        if !found.address {
+        if self.buffer_device_address && !found.address {
             info = info.push_next(&mut ours.buffer_device_address);
         }
         if !found.synchronization {
@@ -194,7 +194,7 @@ struct OfferedFeatures {
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct Features {
-    /// `bufferDeviceAddress`.
+    /// `bufferDeviceAddress`, where supported.
     pub buffer_device_address: vk::PhysicalDeviceBufferDeviceAddressFeatures<'static>,
     /// `synchronization2`.
     pub synchronization2: vk::PhysicalDeviceSynchronization2Features<'static>,

@@ -5,32 +5,52 @@ use std::ffi::CStr;
 use ash::vk;
 
 use super::desc::AdoptDesc;
+use super::requirements::Support;
 use rara_base::error::{Error, Result};
 
 /// What is to be done where a function of the version's own is missing.
 const ENABLE: &str = "create the device with the extensions and features that gpu::check names";
 
-/// Checks that a host's device has the functions of what its description claims, in a Vulkan version.
+/// What is to be done where a function of an extension is missing that the version needs.
+const ENABLE_OR_SAY: &str = "create the device with the extensions and features that gpu::check names, or, if the instance was \
+                             created for Vulkan 1.3, say so by AdoptDesc::api_version";
+
+/// A version as people write it.
+pub(super) fn number(version: u32) -> String {
+    let (major, minor) = (
+        vk::api_version_major(version),
+        vk::api_version_minor(version),
+    );
+    format!("{major}.{minor}")
+}
+
+/// Checks that a host's device has the functions of what its description claims, and of what it uses of the device's support.
 ///
 /// # Safety
 ///
 /// The handles of the description are alive and belong together.
-pub(super) unsafe fn check(desc: &AdoptDesc, version: u32) -> Result<()> {
-    let core = version >= vk::API_VERSION_1_3;
-    let needed: [(bool, &CStr, &str, &str); 7] = [
-        (true, c"vkGetBufferDeviceAddress", "Vulkan 1.2", ENABLE),
+pub(super) unsafe fn check(desc: &AdoptDesc, support: &Support) -> Result<()> {
+    let core = support.api_version >= vk::API_VERSION_1_3;
+    let needed: [(bool, &CStr, &str, &str); 8] = [
+        (true, c"vkCreateRenderPass2", "Vulkan 1.2", ENABLE),
+        (
+            support.buffer_device_address,
+            c"vkGetBufferDeviceAddress",
+            "bufferDeviceAddress",
+            "enable it, or set the description's buffer_device_address to false",
+        ),
         (core, c"vkCmdPipelineBarrier2", "Vulkan 1.3", ENABLE),
         (
             !core,
             c"vkCmdPipelineBarrier2KHR",
             "VK_KHR_synchronization2",
-            ENABLE,
+            ENABLE_OR_SAY,
         ),
         (
             !core,
             c"vkCmdBeginRenderingKHR",
             "VK_KHR_dynamic_rendering",
-            ENABLE,
+            ENABLE_OR_SAY,
         ),
         (
             desc.mesh_shader,

@@ -5,6 +5,7 @@ use ash::vk;
 use super::device::Device;
 use super::failure::failed;
 use super::memory::Buffer;
+use super::requirements::Support;
 use super::shader::{Bindings, BufferUse, MAX_BUFFERS, MAX_PARAMS, Shader};
 use super::shape::DeviceShape;
 use rara_base::counted::counted;
@@ -16,10 +17,20 @@ impl Bindings {
     /// two to six times as long to compile a frame's shaders as with [`Mixed`](Self::Mixed), and draws it no faster. On GPUs
     /// addresses cost nothing.
     pub fn suiting(device: &Device) -> Self {
-        if device.shape() == DeviceShape::Cpu && device.support().push_descriptor {
-            Self::Mixed
-        } else {
-            Self::Address
+        let fastest = match device.shape() {
+            DeviceShape::Cpu => Self::Mixed,
+            DeviceShape::Gpu { .. } => Self::Address,
+        };
+        fastest.or_other(device.support())
+    }
+
+    /// This way where a device has what it needs, or else the one that the device has.
+    #[doc(hidden)]
+    pub fn or_other(self, support: &Support) -> Self {
+        match self {
+            Self::Bound | Self::Mixed if !support.push_descriptor => Self::Address,
+            Self::Address | Self::Mixed if !support.buffer_device_address => Self::Bound,
+            way => way,
         }
     }
 }
@@ -66,6 +77,13 @@ impl Layout {
         shaders: &[&Shader],
         bindings: Bindings,
     ) -> Result<Self> {
+        if bindings != Bindings::Bound && !device.support().buffer_device_address {
+            return Err(Error::Device(
+                "buffer addresses need the feature bufferDeviceAddress, which this device lacks or was made without; bind \
+                 buffers instead (Bindings::Bound)"
+                    .into(),
+            ));
+        }
         let mut uses: Vec<BufferUse> = Vec::new();
         for buffer in shaders.iter().flat_map(|shader| shader.buffers) {
             assert!(

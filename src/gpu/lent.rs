@@ -54,8 +54,8 @@ unsafe impl Sync for LentMemory {}
 ///
 /// # Safety
 /// What [`allocate`](Self::allocate) lends is of the device that was adopted, allocated with
-/// `VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT`, of a type and a size that will do, and nobody else's until it is
-/// [freed](Self::free). For [`Location::Upload`] and [`Location::Readback`] its type is host-coherent, and it is mapped: what is
+/// `VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT` where `bufferDeviceAddress` is enabled, of a type and a size that will do, and
+/// nobody else's until it is [freed](Self::free). For [`Location::Upload`] and [`Location::Readback`] its type is host-coherent, and it is mapped: what is
 /// for `Upload` for writing alone, since rara never reads it.
 pub unsafe trait MemorySource: Send + Sync {
     /// Lends memory.

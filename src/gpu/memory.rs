@@ -66,13 +66,15 @@ impl Device {
                 bytes(self.support().max_buffer_size)
             )));
         }
-        let info = vk::BufferCreateInfo::default().size(size).usage(
-            Usage::STORAGE_BUFFER
-                | Usage::SHADER_DEVICE_ADDRESS
-                | Usage::TRANSFER_SRC
-                | Usage::TRANSFER_DST
-                | Usage::INDIRECT_BUFFER,
-        );
+        let has_address = self.support().buffer_device_address;
+        let mut usage = Usage::STORAGE_BUFFER
+            | Usage::TRANSFER_SRC
+            | Usage::TRANSFER_DST
+            | Usage::INDIRECT_BUFFER;
+        if has_address {
+            usage |= Usage::SHADER_DEVICE_ADDRESS;
+        }
+        let info = vk::BufferCreateInfo::default().size(size).usage(usage);
         // SAFETY: the device is alive as long as `self`.
         let handle =
             unsafe { self.raw().create_buffer(&info, None) }.map_err(failed("vkCreateBuffer"))?;
@@ -111,9 +113,11 @@ impl Device {
                 .bind_buffer_memory(handle, allocation.memory(), allocation.offset())
         }
         .map_err(failed("vkBindBufferMemory"))?;
-        let info = vk::BufferDeviceAddressInfo::default().buffer(handle);
-        // SAFETY: the buffer is bound, has the address usage, and the feature is a requirement.
-        buffer.address = unsafe { self.raw().get_buffer_device_address(&info) };
+        if has_address {
+            let info = vk::BufferDeviceAddressInfo::default().buffer(handle);
+            // SAFETY: the buffer is bound and has the address usage, and the device has the feature.
+            buffer.address = unsafe { self.raw().get_buffer_device_address(&info) };
+        }
         self.set_name(handle, desc.name);
         log::debug!("buffer \"{}\" of {} was made", desc.name, bytes(size));
         Ok(Buffer(Arc::new(buffer)))
@@ -130,7 +134,7 @@ impl Buffer {
         self.0.handle
     }
 
-    /// The device address of its first byte.
+    /// The device address of its first byte; 0 where the device has no addresses.
     pub fn address(&self) -> u64 {
         self.0.address
     }

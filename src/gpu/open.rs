@@ -12,6 +12,7 @@ use super::device::Device;
 use super::devices::{self, DeviceInfo};
 use super::failure::failed;
 use super::instance::Instance;
+use super::requirements::Support;
 use super::shape::DeviceShape;
 use super::{functions, requirements};
 use rara_base::error::{Error, Result};
@@ -86,7 +87,7 @@ impl Device {
             .pipeline_statistics(support.pipeline_statistics)
             .pipeline_cache(pipeline_cache)
             .shape(desc.shape);
-        let allocator = allocator(&adopt).inspect_err(|_| {
+        let allocator = allocator(&adopt, &support).inspect_err(|_| {
             // SAFETY: nothing else was made from the device, and nobody else knows it.
             unsafe {
                 raw.destroy_pipeline_cache(pipeline_cache, None);
@@ -113,8 +114,9 @@ impl Device {
         // SAFETY: the caller vouches for the handles.
         let mut support =
             unsafe { requirements::check(&desc.instance, desc.physical_device, desc.api_version) }?;
+        support.buffer_device_address &= desc.buffer_device_address;
         // SAFETY: as above.
-        unsafe { functions::check(&desc, support.api_version) }?;
+        unsafe { functions::check(&desc, &support) }?;
         // SAFETY: as above.
         let families = unsafe {
             desc.instance
@@ -142,6 +144,13 @@ impl Device {
         }
         support.mesh_shader &= desc.mesh_shader;
         support.push_descriptor &= desc.push_descriptor;
+        if !support.buffer_device_address && !support.push_descriptor {
+            return Err(Error::Invalid(
+                "the device has neither bufferDeviceAddress nor VK_KHR_push_descriptor, one of which is needed to reach \
+                 buffers: enable one, and say so by AdoptDesc::buffer_device_address or AdoptDesc::push_descriptor"
+                    .into(),
+            ));
+        }
         if !desc.full_subgroups {
             support.full_subgroups = [0; 2];
         }
@@ -165,17 +174,18 @@ impl Device {
         }
         let allocator = match &desc.allocator {
             Some(lent) => lent.clone(),
-            None => allocator(&desc)?,
+            None => allocator(&desc, &support)?,
         };
         let has = |feature| if feature { "" } else { "no " };
         log::info!(
-            "{} ({}) was adopted for Vulkan {}.{}: pipelines for {:?}, {}; {}mesh shaders, {}push descriptors, {}timestamps",
+            "{} ({}) was adopted for Vulkan {}.{}: pipelines for {:?}, {}; {}buffer addresses, {}mesh shaders, {}push descriptors, {}timestamps",
             info.name,
             info.driver,
             vk::api_version_major(support.api_version),
             vk::api_version_minor(support.api_version),
             shape.0,
             shape.1,
+            has(support.buffer_device_address),
             has(support.mesh_shader),
             has(support.push_descriptor),
             has(support.timestamp_bits > 0),
@@ -184,13 +194,13 @@ impl Device {
     }
 }
 
-fn allocator(desc: &AdoptDesc) -> Result<Arc<Mutex<Allocator>>> {
+fn allocator(desc: &AdoptDesc, support: &Support) -> Result<Arc<Mutex<Allocator>>> {
     Allocator::new(&AllocatorCreateDesc {
         instance: desc.instance.clone(),
         device: desc.device.clone(),
         physical_device: desc.physical_device,
         debug_settings: AllocatorDebugSettings::default(),
-        buffer_device_address: true,
+        buffer_device_address: support.buffer_device_address,
         // Shared blocks start small: large buffers have memory of their own.
         allocation_sizes: AllocationSizes::new(32 << 20, 32 << 20),
     })

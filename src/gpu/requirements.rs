@@ -5,6 +5,7 @@ use std::ffi::CStr;
 use ash::{ext, khr, vk};
 
 use super::failure::failed;
+use super::functions::number;
 use super::shader::MAX_BUFFERS;
 use rara_base::error::{Error, Result};
 use rara_base::limits::{BLOCK_SIZE, RADIX_GROUP_SIZE};
@@ -14,9 +15,10 @@ pub const LEAST_SUBGROUP: u32 = 8;
 
 /// The optional features of a physical device that meets the requirements.
 ///
-/// Required are `bufferDeviceAddress`, `synchronization2` and `dynamicRendering`, which are Vulkan 1.3, or 1.2 with
-/// `VK_KHR_synchronization2` and `VK_KHR_dynamic_rendering`; compute workgroups of 256, where Vulkan promises 128; and a
-/// queue family for graphics and compute. Everything else is optional and is noted here.
+/// Required are `synchronization2` and `dynamicRendering`, which are Vulkan 1.3, or 1.2 with `VK_KHR_synchronization2` and
+/// `VK_KHR_dynamic_rendering`; a way to reach buffers, which is [`buffer_device_address`](Self::buffer_device_address) or
+/// [`push_descriptor`](Self::push_descriptor); compute workgroups of 256, where Vulkan promises 128; and a queue family for
+/// graphics and compute. Everything else is optional and is noted here.
 #[derive(Debug, Clone, Default)]
 #[non_exhaustive]
 pub struct Support {
@@ -26,6 +28,10 @@ pub struct Support {
     pub queue_family: u32,
     /// `VK_EXT_mesh_shader` with mesh and task shaders.
     pub mesh_shader: bool,
+    /// `bufferDeviceAddress`. Without it [`Bindings::Bound`](super::Bindings::Bound) is the only way, as under tools that hide
+    /// the feature. A host that leaves it disabled though the device has it sets this to false before it takes the features
+    /// from here, and says the same by [`AdoptDesc::buffer_device_address`](super::AdoptDesc::buffer_device_address).
+    pub buffer_device_address: bool,
     /// `VK_KHR_push_descriptor`, and as many storage buffers a stage as pipelines with
     /// [`Bindings::Bound`](super::Bindings::Bound) have.
     pub push_descriptor: bool,
@@ -107,22 +113,16 @@ pub unsafe fn check(
         .unwrap_or(c"?")
         .to_string_lossy();
     let lacks = |what: String| Err(Error::Device(format!("{name} cannot be used: {what}")));
-    let number = |version| {
-        (
-            vk::api_version_major(version),
-            vk::api_version_minor(version),
-        )
-    };
     if api_version < vk::API_VERSION_1_2 {
-        let (major, minor) = number(api_version);
         return Err(Error::Invalid(format!(
-            "the instance was created for Vulkan {major}.{minor} and 1.2 is needed: set VkApplicationInfo::apiVersion"
+            "the instance was created for Vulkan {} and 1.2 is needed: set VkApplicationInfo::apiVersion",
+            number(api_version)
         )));
     }
     if base.api_version < vk::API_VERSION_1_2 {
-        let (major, minor) = number(base.api_version);
         return lacks(format!(
-            "it offers Vulkan {major}.{minor} and 1.2 is needed; a newer driver may help"
+            "it offers Vulkan {} and 1.2 is needed; a newer driver may help",
+            number(base.api_version)
         ));
     }
     let version = api_version.min(base.api_version);
@@ -135,10 +135,9 @@ pub unsafe fn check(
     let has_mesh = has(ext::mesh_shader::NAME);
     for needed in [khr::synchronization2::NAME, khr::dynamic_rendering::NAME] {
         if !has_1_3 && !has(needed) {
-            let (major, minor) = number(version);
-            let needed = needed.to_string_lossy();
+            let (version, needed) = (number(version), needed.to_string_lossy());
             return lacks(format!(
-                "Vulkan {major}.{minor} needs the extension {needed}, which it lacks"
+                "Vulkan {version} needs the extension {needed}, which it lacks"
             ));
         }
     }
@@ -163,7 +162,6 @@ pub unsafe fn check(
     unsafe { instance.get_physical_device_features2(physical, &mut features) };
     let pipeline_statistics = features.features.pipeline_statistics_query == vk::TRUE;
     for (offered, feature) in [
-        (v12.buffer_device_address, "bufferDeviceAddress"),
         (synchronization2.synchronization2, "synchronization2"),
         (dynamic_rendering.dynamic_rendering, "dynamicRendering"),
     ] {
@@ -205,6 +203,14 @@ pub unsafe fn check(
         .max_per_stage_descriptor_storage_buffers
         .min(limits.max_descriptor_set_storage_buffers)
         >= MAX_BUFFERS as u32;
+    let buffer_device_address = v12.buffer_device_address == vk::TRUE;
+    let push_descriptor = binds && has(khr::push_descriptor::NAME);
+    if !buffer_device_address && !push_descriptor {
+        return lacks(format!(
+            "it lacks the feature bufferDeviceAddress, and VK_KHR_push_descriptor with {MAX_BUFFERS} storage buffers a stage, \
+             one of which is needed to reach buffers"
+        ));
+    }
     let operations = vk::SubgroupFeatureFlags::VOTE | vk::SubgroupFeatureFlags::SHUFFLE;
     let has_subgroups = v11.subgroup_supported_operations.contains(operations)
         && v11
@@ -223,7 +229,8 @@ pub unsafe fn check(
         api_version: version.min(vk::API_VERSION_1_3),
         queue_family: family as u32,
         mesh_shader,
-        push_descriptor: binds && has(khr::push_descriptor::NAME),
+        buffer_device_address,
+        push_descriptor,
         subgroup_size: if has_subgroups { v11.subgroup_size } else { 0 },
         full_subgroups: if asks_for_subgroups {
             // Subgroups so small that the largest workgroup would have more of them than the device allows are left out.

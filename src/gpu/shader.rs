@@ -2,7 +2,9 @@
 
 use ash::vk;
 
-/// The way in which shaders reach their buffers.
+/// The way in which shaders reach their buffers. A renderer takes another one where a device lacks what a way needs:
+/// addresses need [`Support::buffer_device_address`](super::Support::buffer_device_address), and binding needs
+/// [`Support::push_descriptor`](super::Support::push_descriptor).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Bindings {
     /// Buffers are reached by device address. Their size has no limit, but the validation layer cannot check accesses.

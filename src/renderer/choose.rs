@@ -1,8 +1,9 @@
 //! Choices that suit a device: how splats become pixels on it, how its sort is divided, and how buffers are reached.
 
+use rara_base::counted::counted;
 use rara_base::error::{Error, Result};
 use rara_base::limits;
-use rara_gpu::{Bindings, Device, DeviceShape, Support};
+use rara_gpu::{Bindings, DeviceShape, Support};
 use rara_scene::settings::{Raster, Settings};
 
 /// The properties of a host's targets that decide whether tiles can draw into them.
@@ -96,15 +97,18 @@ pub(super) fn runs(shape: DeviceShape, gaussians: u32) -> u32 {
     }
 }
 
-/// How buffers are reached: as wanted, unless the device cannot bind buffers as large as this one, bytes.
-pub(super) fn bindings(device: &Device, wanted: Bindings, largest: u64) -> Bindings {
-    let support = device.support();
-    let binds = support.push_descriptor && largest <= support.max_storage_buffer_range;
-    match wanted {
-        Bindings::Bound if binds => Bindings::Bound,
-        // The constants are small.
-        Bindings::Mixed if support.push_descriptor => Bindings::Mixed,
-        _ => Bindings::Address,
+/// How buffers are reached, the largest of which has so many bytes: as wanted, or else as the device can.
+pub(super) fn bindings(support: &Support, wanted: Bindings, largest: u64) -> Result<Bindings> {
+    let most = support.max_storage_buffer_range;
+    match wanted.or_other(support) {
+        // What is bound of others is small.
+        Bindings::Bound if largest > most && support.buffer_device_address => Ok(Bindings::Address),
+        Bindings::Bound if largest > most => Err(Error::Device(format!(
+            "a buffer of {} cannot be bound: this device binds at most {most} (maxStorageBufferRange), and has no buffer \
+             addresses, which have no such limit; enable bufferDeviceAddress, or draw fewer Gaussians or a smaller picture",
+            counted(largest, "byte")
+        ))),
+        way => Ok(way),
     }
 }
 

@@ -67,7 +67,7 @@ impl Renderer {
         // An earlier frame may have made the buffers larger than this one needs.
         let of_cut = cut.buffers().sizes().largest();
         let largest = buffers.sizes().largest().max(of_cut);
-        let bindings = self.bindings_of(largest.max(request.scene.largest()));
+        let bindings = self.bindings_of(largest.max(request.scene.largest()))?;
         let needs = |need: &mut dyn FnMut(_)| plan.pipelines(targets, need);
         decision.is_first_use = self.pipelines.ensure(&self.device, bindings, &needs)?;
         let frame = ConfiguredFrame {
@@ -107,7 +107,7 @@ impl Renderer {
         let of_cut = self.cut.memory.allocated();
         let held = held.max(of_cut.map(|held| held.sizes().largest()));
         let needed = largest(&plan).max(held.unwrap_or(0));
-        let bindings = self.bindings_of(needed.max(request.scene.largest()));
+        let bindings = self.bindings_of(needed.max(request.scene.largest()))?;
         let targets = self.targets(request.draws_linear());
         let needs = |need: &mut dyn FnMut(_)| plan.pipelines(targets, need);
         Ok(!self.pipelines.has_all(bindings, &needs))
@@ -379,8 +379,8 @@ impl Renderer {
     }
 
     /// How buffers are reached, the largest of which has so many bytes.
-    pub(super) fn bindings_of(&self, largest: u64) -> Bindings {
-        choose::bindings(&self.device, self.desc.bindings, largest)
+    pub(super) fn bindings_of(&self, largest: u64) -> Result<Bindings> {
+        choose::bindings(self.device.support(), self.desc.bindings, largest)
     }
 }
 

@@ -162,7 +162,7 @@ impl Cut {
         plan.finds_sides &= !(is_next && self.state.has_found(scene.id, &plan));
         let buffers = self.state.memory.buffers().clone();
         let largest = buffers.sizes().largest().max(scene.largest());
-        let bindings = choose::bindings(&self.device, self.bindings, largest);
+        let bindings = choose::bindings(self.device.support(), self.bindings, largest)?;
         let needs = |need: &mut dyn FnMut(_)| plan.pipelines(need);
         self.pipelines.ensure(&self.device, bindings, &needs)?;
         let version = self.configured.back().map_or(0, |had| had.seen.version) + 1;

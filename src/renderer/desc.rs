@@ -46,8 +46,9 @@ setters! {
         /// Dynamic rendering, or a classic render pass.
         pub target: Target,
         /// The way to reach buffers: by address or bound, where the validation layer can watch them, or some of either;
-        /// [`Bindings::suiting`] says which is faster on a device. With [`Bindings::Bound`] a frame whose buffers exceed the
-        /// device's binding size uses addresses.
+        /// [`Bindings::suiting`] says which is faster on a device. A device that lacks what this way needs uses another, and
+        /// with [`Bindings::Bound`] so does a frame whose buffers exceed the device's binding size. Without addresses such a
+        /// frame is refused.
         pub bindings: Bindings,
         /// True to take timestamps around the stages.
         pub timing: bool,

@@ -120,8 +120,8 @@ impl<P: Owner> Memory<P> {
             .chain(&self.buffers)
             .flat_map(|buffers| buffers.all())
             .collect();
-        all.sort_unstable_by_key(|buffer| buffer.address());
-        all.dedup_by_key(|buffer| buffer.address());
+        all.sort_unstable_by_key(|buffer| buffer.handle());
+        all.dedup_by_key(|buffer| buffer.handle());
         all.iter().map(|buffer| buffer.size()).sum()
     }
 

@@ -182,6 +182,13 @@ impl Renderer {
 
     fn with(device: &Device, desc: RendererDesc, pipelines: SharedPipelines) -> Result<Self> {
         desc.check(device)?;
+        let taken = desc.bindings.or_other(device.support());
+        if taken != desc.bindings {
+            log::info!(
+                "buffers are reached by Bindings::{taken:?}: the device lacks what Bindings::{:?} needs",
+                desc.bindings
+            );
+        }
         let frames =
             FramesInFlight::new(device, desc.frames_in_flight, desc.timing, desc.statistics)?;
         Ok(Self {

@@ -124,9 +124,9 @@ impl Renderer {
     fn compile(&mut self, limits: &FrameLimits, pairs: PairRoom, largest: u64) -> Result<()> {
         // A scene may be of either light.
         let targets = [false, true].map(|draws_linear| self.targets(draws_linear));
-        let of_memory = self.bindings_of(largest);
+        let of_memory = self.bindings_of(largest)?;
         let scene = SceneBuffers::largest_of(limits.gaussians, limits.sh_format);
-        let of_scene = self.bindings_of(largest.max(scene));
+        let of_scene = self.bindings_of(largest.max(scene))?;
         let mut pipelines = std::mem::take(&mut self.pipelines);
         let compiled = self.for_each_plan(limits, pairs, &mut |plan| {
             for targets in targets {

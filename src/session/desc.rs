@@ -13,7 +13,7 @@ pub struct HeadlessDesc {
     /// Load the Khronos validation layer with synchronisation checks; any message becomes
     /// [`Error::Validation`](crate::Error::Validation).
     pub validation: bool,
-    /// How buffers are reached. `None` is [what suits the device](Bindings::suiting), but bound under validation, whose
+    /// How buffers are reached, where the device has what that needs. `None` is [what suits the device](Bindings::suiting), but bound under validation, whose
     /// synchronisation checks cannot watch an address.
     pub bindings: Option<Bindings>,
     /// The place in which compiled pipelines are kept from one run to the next.
@@ -43,10 +43,11 @@ impl HeadlessDesc {
     /// How buffers are reached.
     #[doc(hidden)]
     pub fn bindings_on(&self, device: &Device) -> Bindings {
-        self.bindings.unwrap_or(if self.validation {
+        let wanted = self.bindings.unwrap_or(if self.validation {
             Bindings::Bound
         } else {
             Bindings::suiting(device)
-        })
+        });
+        wanted.or_other(device.support())
     }
 }

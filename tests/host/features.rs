@@ -8,10 +8,12 @@ use std::ptr::null_mut;
 
 use crate::canvas::host;
 use crate::canvas::host::validation::{self, Messages};
+use crate::canvas::{Canvas, CanvasDesc, Frame};
+use crate::common;
 use rara::ash::{Device, Entry, Instance, vk};
-use rara::gpu::{self, AdoptDesc, Support};
+use rara::gpu::{self, AdoptDesc, Bindings, Support};
 use rara::scene::{Kind, generate};
-use rara::{SceneBuffers, ShFormat};
+use rara::{ClipOp, Raster, Renderer, RendererDesc, SceneBuffers, Settings, ShFormat};
 
 const VERSION: u32 = vk::API_VERSION_1_3;
 
@@ -215,4 +217,78 @@ fn what_a_host_claims_and_has_not_enabled_is_refused_by_name() {
             assert_eq!(device.close(), Vec::<String>::new());
         },
     );
+}
+
+/// Draws a frame by tiles and one by quads on a host's device.
+fn pictures(lent: &AdoptDesc, device: &gpu::Device, bindings: Bindings) -> Vec<Vec<[f32; 4]>> {
+    const VIEW: (u32, u32) = (90, 60);
+    let scene = generate(Kind::General, 600, 1);
+    let (camera, clip) = (
+        common::views(&scene, 1, VIEW)[0],
+        common::clip(&scene, 1, ClipOp::And),
+    );
+    let buffers = SceneBuffers::upload(device, &scene, ShFormat::default()).expect("uploads");
+    let format = vk::Format::R32G32B32A32_SFLOAT;
+    let canvas = Canvas::new(lent, device, CanvasDesc::new(VIEW, format));
+    let desc = RendererDesc::new(format).bindings(bindings);
+    let mut renderer = Renderer::new(device, desc).expect("a renderer");
+    let mut draw = |raster| {
+        let settings = Settings::default().raster(raster);
+        let configured = renderer.configure(&buffers, &camera, &clip, &settings);
+        canvas.draw_frame(&mut renderer, &buffers, configured, &Frame::new(VIEW))
+    };
+    [Raster::Tiles, Raster::Quad].map(&mut draw).into()
+}
+
+/// A device without addresses draws the same bytes, whatever way a renderer asks for: only bound buffers are left.
+#[test]
+fn a_device_without_addresses_draws_the_same_bytes() {
+    let drawn = |addresses: bool, bindings: &[Bindings]| {
+        let mut drawn = Vec::new();
+        with_device(
+            |instance, physical, support, info| {
+                let mut own =
+                    vk::PhysicalDeviceTimelineSemaphoreFeatures::default().timeline_semaphore(true);
+                let mut support = support.clone();
+                support.buffer_device_address &= addresses;
+                let mut features = support.features();
+                let info = features.chain(info.push_next(&mut own));
+                // SAFETY: the instance is alive, and the device offers all that is asked for.
+                unsafe { instance.create_device(physical, &info, None) }.expect("a device")
+            },
+            |lent, support| {
+                if !support.push_descriptor {
+                    eprintln!("SKIPPED: BOUND BUFFERS: the device has no push descriptors");
+                    return;
+                }
+                let lent = lent.buffer_device_address(addresses);
+                if !addresses {
+                    // SAFETY: the handles belong together, and are as the description says.
+                    let error = unsafe { gpu::Device::adopt(lent.clone()) }.unwrap_err();
+                    let text = error.to_string();
+                    assert!(matches!(error, rara::Error::Invalid(_)), "{text}");
+                    assert!(text.contains("neither bufferDeviceAddress"), "{text}");
+                }
+                let lent = lent.push_descriptor(true);
+                // SAFETY: as above.
+                let device = unsafe { gpu::Device::adopt(lent.clone()) }.expect("draws splats");
+                assert_eq!(device.support().buffer_device_address, addresses);
+                if !addresses {
+                    assert_eq!(Bindings::suiting(&device), Bindings::Bound);
+                }
+                drawn = bindings
+                    .iter()
+                    .map(|bindings| pictures(&lent, &device, *bindings))
+                    .collect();
+                assert_eq!(device.close(), Vec::<String>::new());
+            },
+        );
+        drawn
+    };
+    let usual = drawn(true, &[Bindings::Bound]);
+    let all = [Bindings::Address, Bindings::Bound, Bindings::Mixed];
+    let without = drawn(false, &all);
+    assert!(without.iter().all(|pictures| *pictures == usual[0]));
+    let opaque = |pixels: &Vec<[f32; 4]>| pixels.iter().any(|pixel| pixel[3] > 0.5);
+    assert!(usual.iter().flatten().all(opaque));
 }

@@ -16,6 +16,7 @@ fn chained(info: &vk::DeviceCreateInfo<'_>) -> usize {
 #[test]
 fn features_are_chained_to_one_create_info_after_another() {
     let support = Support {
+        buffer_device_address: true,
         mesh_shader: true,
         ..Support::default()
     };

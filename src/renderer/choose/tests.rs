@@ -77,3 +77,26 @@ fn tiles_are_chosen_where_they_can_draw() {
         }
     }
 }
+
+#[test]
+fn buffers_are_reached_as_the_device_can() {
+    use Bindings::{Address, Bound, Mixed};
+    let mut support = Support::default();
+    support.max_storage_buffer_range = 1000;
+    for (addresses, binds, largest, taken) in [
+        (true, true, 1000, [Address, Bound, Mixed]),
+        (true, true, 1001, [Address, Address, Mixed]),
+        (true, false, 1, [Address; 3]),
+        (false, true, 1000, [Bound; 3]),
+    ] {
+        (support.buffer_device_address, support.push_descriptor) = (addresses, binds);
+        let taken_by = [Address, Bound, Mixed].map(|wanted| bindings(&support, wanted, largest));
+        let taken_by = taken_by.map(|taken| taken.expect("there is a way"));
+        assert_eq!(taken_by, taken, "{addresses}, {binds}, {largest}");
+    }
+    let refused = bindings(&support, Address, 1001).expect_err("neither way has room");
+    let text = refused.to_string();
+    for says in ["1001 bytes", "at most 1000", "bufferDeviceAddress"] {
+        assert!(text.contains(says), "{text}");
+    }
+}

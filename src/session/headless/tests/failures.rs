@@ -191,10 +191,6 @@ fn a_device_that_is_too_old_or_lacks_something_says_so() {
             "Vulkan 1.2 needs the extension VK_KHR_synchronization2, which it lacks",
         ),
         (
-            Pretence::Without("bufferDeviceAddress"),
-            "it lacks the feature bufferDeviceAddress",
-        ),
-        (
             Pretence::Without("synchronization2"),
             "it lacks the feature synchronization2",
         ),
@@ -244,6 +240,30 @@ fn a_device_of_vulkan_1_2_draws_the_same_picture() {
         pictures.map(|pictures| pictures.expect("renders"))
     });
     assert!(natural == floor, "to the bit");
+}
+
+/// As where a capture tool hides the feature.
+#[test]
+fn a_device_without_addresses_binds_its_buffers() {
+    let without = Pretence::Without("bufferDeviceAddress");
+    let [natural, bound] = [None, Some(without)].map(|pretence| {
+        let device = faults::device(pretence).expect("a device");
+        assert_eq!(device.support().buffer_device_address, pretence.is_none());
+        let desc = HeadlessDesc {
+            bindings: Some(match pretence {
+                None => Bindings::Bound,
+                Some(_) => Bindings::Mixed,
+            }),
+            pipeline_cache: PipelineCache::Off,
+            ..HeadlessDesc::default()
+        };
+        let mut headless = Headless::on(device.clone(), &desc).expect("a renderer");
+        let pictures = life(&mut headless, Raster::Tiles).expect("renders");
+        drop(headless);
+        assert_eq!(device.close(), Vec::<String>::new());
+        pictures
+    });
+    assert!(natural == bound, "to the bit");
 }
 
 #[test]

@@ -14,8 +14,8 @@ use rara_base::error::{Error, Result};
 impl Bindings {
     /// The fastest way on a device. CPU drivers load what all lanes share once from a bound buffer, and for each lane from
     /// an address, but compile a branch for each lane where a bound buffer is read at several places: lavapipe then takes
-    /// two to six times as long to compile a frame's shaders as with [`Mixed`](Self::Mixed), and draws it no faster. On GPUs
-    /// addresses cost nothing.
+    /// about twice as long to compile a frame's shaders as with [`Mixed`](Self::Mixed), and draws it no faster. Addresses alone
+    /// take a third more. On GPUs addresses cost nothing. A device that lacks what that needs is suited by what it has.
     pub fn suiting(device: &Device) -> Self {
         let fastest = match device.shape() {
             DeviceShape::Cpu => Self::Mixed,

@@ -100,7 +100,7 @@ fn lists(sources: &str) -> String {
     lists.iter().map(list).collect()
 }
 
-/// What names.rs is: the fields of the structs, and the functions and constants.
+/// Lists, as names.rs, the fields of the structs, and the functions and constants.
 fn names(sources: &str) -> String {
     let [mut all, mut others] = [const { String::new() }; 2];
     for (name, fields) in fields(sources) {

@@ -120,7 +120,8 @@ impl Drop for Release {
     }
 }
 
-/// Enables nothing optional but bufferDeviceAddress, and sets all handles to null; the host replaces them. `desc_size` is sizeof *desc.
+/// Enables nothing optional but bufferDeviceAddress, and sets all handles to null; the host replaces them. `desc_size` is
+/// sizeof *desc.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_adopt_desc_default(
     desc: *mut RaraAdoptDesc,

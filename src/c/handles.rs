@@ -29,7 +29,7 @@ struct Place {
     kind: TypeId,
     /// `None` while a thread has the object to itself.
     object: Option<Object>,
-    /// That thread.
+    /// The thread that has it to itself.
     taken_by: Option<ThreadId>,
     /// How many calls use the object beside each other.
     users: usize,
@@ -101,7 +101,7 @@ pub(crate) fn destroy<T: Send + Sync + 'static>(handle: *mut T) -> RaraResult {
     })
 }
 
-/// What a handle stands for, to be used beside others that use it. It waits for a call of another thread that changes it.
+/// Finds what a handle stands for, to be used beside others that use it. It waits for a call of another thread that changes it.
 pub(crate) fn alive<T: Send + Sync + 'static>(
     handle: *const T,
     name: &str,
@@ -116,7 +116,7 @@ pub(crate) fn alive<T: Send + Sync + 'static>(
     })
 }
 
-/// What a handle stands for, to be changed by one thread that has it to itself meanwhile. It waits for the calls of other
+/// Finds what a handle stands for, to be changed by one thread that has it to itself meanwhile. It waits for the calls of other
 /// threads that use it.
 pub(crate) fn alone<T: Send + Sync + 'static>(
     handle: *mut T,

@@ -158,8 +158,8 @@ pub(crate) unsafe fn renderer_desc(desc: *const RaraRendererDesc) -> Result<Rend
         .frames_in_flight(desc.frames_in_flight))
 }
 
-/// One colour attachment of one sample in dynamic rendering, no timestamps, no statistics, no reuse, one frame in flight. `desc_size` is
-/// sizeof *desc.
+/// One colour attachment of one sample in dynamic rendering, no timestamps, no statistics, no reuse, one frame in flight.
+/// `desc_size` is sizeof *desc.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_renderer_desc_default(
     desc: *mut RaraRendererDesc,

@@ -8,10 +8,10 @@ use super::desc::AdoptDesc;
 use super::requirements::Support;
 use rara_base::error::{Error, Result};
 
-/// What is to be done where a function of the version's own is missing.
+/// The remedy where a function of the version's own is missing.
 const ENABLE: &str = "create the device with the extensions and features that gpu::check names";
 
-/// What is to be done where a function of an extension is missing that the version needs.
+/// The remedy where a function of an extension is missing that the version needs.
 const ENABLE_OR_SAY: &str = "create the device with the extensions and features that gpu::check names, or, if the instance was \
                              created for Vulkan 1.3, say so by AdoptDesc::api_version";
 

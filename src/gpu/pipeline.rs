@@ -95,7 +95,7 @@ fn subgroup(device: &Device) -> Option<u32> {
     }
 }
 
-/// What a graphics pipeline does with a depth attachment.
+/// The use that a graphics pipeline makes of a depth attachment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum DepthUse {
     /// It leaves it alone.
@@ -118,7 +118,7 @@ pub struct GraphicsDesc<'a> {
     /// Specialisation constants of both stages: id and value.
     pub constants: &'a [(u32, u32)],
     pub attachments: Attachments,
-    /// What is done with the depth attachment, where there is one.
+    /// The use of the depth attachment, where there is one.
     pub depth: DepthUse,
     /// How fragments are blended; `None` overwrites.
     pub blend: Option<vk::PipelineColorBlendAttachmentState>,

@@ -40,10 +40,6 @@ fn record(recording: &mut Recording<'_, '_, EyePlan>) {
 
 /// The draw of the depths as quads.
 pub(crate) fn draw(plan: &EyePlan, attachments: Attachments) -> Draw<splat_depth::Program> {
-    let depth = match attachments.depth {
-        Some(_) => DepthUse::Tested,
-        None => DepthUse::Ignored,
-    };
     let weight = Weight::from_plan(plan);
     let constants = splat_depth::Constants {
         boxes: !plan.needs_quads(),
@@ -54,10 +50,10 @@ pub(crate) fn draw(plan: &EyePlan, attachments: Attachments) -> Draw<splat_depth
         decay: weight.decay,
         miss: weight.miss,
         phi_form: weight.phi,
-        depth: depth == DepthUse::Tested,
+        depth: attachments.depth.is_some(),
     };
     let shaders = [&splat_depth::VERT, &splat_depth::FRAG];
-    Draw::new(shaders, constants, attachments, depth)
+    Draw::new(shaders, constants, attachments, DepthUse::Tested)
 }
 
 /// Draws inside the host's rendering scope. `origin` is where its viewport begins, px, `map` says what its depth buffer

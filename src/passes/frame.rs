@@ -227,7 +227,7 @@ impl EyePlan {
         if self.is_drawn && self.is_tiled() {
             need(composite::draw(self, targets, Part::Colours).key());
         }
-        if self.is_tiled() && self.way.writes_depth {
+        if self.way.writes_depth {
             need(composite::draw(self, targets, Part::WrittenDepth).key());
         }
         if let Some(attachments) = targets.expected_depth {

@@ -10,7 +10,7 @@ use bytemuck::cast_slice;
 use crate::passes::cut_plan::SceneFacts;
 use crate::passes::pair_estimate::PairSample;
 use crate::passes::scene_layer::{
-    PackedLayer, SceneLayer, join_sets, layer_index, sizes, write_in_order,
+    PackedLayer, SceneLayer, bytes_each, join_sets, layer_index, sizes, write_in_order,
 };
 use crate::passes::sh_storage;
 use crate::types::{Block, Gaussian};
@@ -95,8 +95,8 @@ impl SceneBuffers {
     ///
     /// # Errors
     /// [`Error::Invalid`] for a number that no layer has, for more Gaussians than the layer has room for or of a higher degree than
-    /// the scene's, for Gaussians in linear light beside others that are not, and for a layer that is a
-    /// part of Gaussians that a selection has divided.
+    /// the scene's, for Gaussians in linear light beside others that are not, and for a layer that is a part of Gaussians that
+    /// a selection has divided.
     pub fn replace_layer(&mut self, index: usize, gaussians: &Gaussians) -> Result<()> {
         let device = self.gaussians.device().clone();
         let replaced = self.replaced(index, gaussians)?;
@@ -149,10 +149,9 @@ impl SceneBuffers {
         let Some(layer) = self.layers.get(index) else {
             return 0;
         };
-        let words = sh_storage::words(self.sh_format, 3 * sh_coefficients(self.sh_degree));
-        let each = size_of::<Gaussian>() + words * size_of::<u32>();
-        let blocks = layer.block_end() - layer.first_block;
-        u64::from(gaussians) * each as u64 + u64::from(blocks) * size_of::<Block>() as u64
+        let each = bytes_each(self.sh()).iter().sum::<usize>() as u64;
+        let blocks = u64::from(layer.block_count());
+        u64::from(gaussians) * each + blocks * size_of::<Block>() as u64
     }
 
     /// A layer with other Gaussians, and the sample of the scene with it.
@@ -183,21 +182,22 @@ impl SceneBuffers {
             );
         }
         let sample = self.sample.with(index, gaussians, self.count as usize);
-        Ok((layer.with(gaussians)?, sample))
+        Ok((layer.with(gaussians), sample))
     }
 
     /// The Gaussians of a layer as the device gets them in its place.
     fn packed<'a>(&self, index: usize, gaussians: &'a Gaussians) -> Result<PackedLayer<'a>> {
         let layer = self.layer(index)?;
-        let sh = (self.sh_format, 3 * sh_coefficients(self.sh_degree));
-        let mut packed = PackedLayer::new(
-            Cow::Borrowed(gaussians),
-            layer.first_block,
-            layer.numbers()?,
-            sh,
-        );
-        packed.fill_blocks((layer.block_end() - layer.first_block) as usize);
+        let (first_block, numbers) = (layer.first_block, layer.numbers()?);
+        let gaussians = Cow::Borrowed(gaussians);
+        let mut packed = PackedLayer::new(gaussians, first_block, numbers, self.sh());
+        packed.fill_blocks(layer.block_count() as usize);
         Ok(packed)
+    }
+
+    /// How spherical harmonics are stored, and how many numbers there are of each Gaussian.
+    fn sh(&self) -> (ShFormat, usize) {
+        (self.sh_format, 3 * sh_coefficients(self.sh_degree))
     }
 
     /// Notes that the memory will hold a layer with other Gaussians.

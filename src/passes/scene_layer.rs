@@ -64,17 +64,16 @@ impl SceneLayer {
     }
 
     /// The same with other Gaussians.
-    pub(super) fn with(&self, gaussians: &Gaussians) -> Result<Self> {
-        self.numbers()?;
+    pub(super) fn with(&self, gaussians: &Gaussians) -> Self {
         let corners = corners(gaussians);
-        Ok(Self {
+        Self {
             gaussians: gaussians.len() as u32,
             box_around: corners,
             corners,
             origin: gaussians.origin(),
             training: gaussians.training(),
             ..self.clone()
-        })
+        }
     }
 
     /// The numbers of its Gaussians, if they follow each other.
@@ -145,9 +144,14 @@ impl SceneLayer {
         self.first_block * limits::BLOCK_SIZE + self.gaussians
     }
 
+    /// The blocks that it has room for.
+    pub(super) fn block_count(&self) -> u32 {
+        self.room.div_ceil(limits::BLOCK_SIZE)
+    }
+
     /// The first block behind it.
     pub(super) fn block_end(&self) -> u32 {
-        self.first_block + self.room.div_ceil(limits::BLOCK_SIZE)
+        self.first_block + self.block_count()
     }
 }
 
@@ -194,21 +198,22 @@ pub(super) fn join_sets(layers: &mut [SceneLayer], numbers: &[Numbers<'_>]) {
     }
 }
 
+/// Bytes of a Gaussian, and of its spherical harmonics, of which so many numbers are stored.
+pub(super) fn bytes_each((format, numbers): (ShFormat, usize)) -> [usize; 2] {
+    let words = sh_storage::words(format, numbers);
+    [size_of::<Gaussian>(), words * size_of::<u32>()]
+}
+
 /// Bytes of the Gaussians, their spherical harmonics, and the bounds of their blocks.
 pub(super) fn sizes(scene: &Scene<'_>, format: ShFormat) -> [u64; 3] {
-    let words = sh_storage::words(format, 3 * sh_coefficients(scene.sh_degree()));
+    let [gaussian, sh] = bytes_each((format, 3 * sh_coefficients(scene.sh_degree())));
     let block = limits::BLOCK_SIZE as usize;
     let (mut blocks, mut end) = (0, 0);
     for layer in scene.layers() {
         end = blocks * block + layer.gaussians().len();
         blocks = end.div_ceil(block);
     }
-    [
-        end * size_of::<Gaussian>(),
-        end * words * size_of::<u32>(),
-        blocks * size_of::<Block>(),
-    ]
-    .map(|bytes| bytes as u64)
+    [end * gaussian, end * sh, blocks * size_of::<Block>()].map(|bytes| bytes as u64)
 }
 
 /// The corners of the box around all centres.
@@ -280,8 +285,7 @@ impl<'a> PackedLayer<'a> {
 
     /// Bytes of a Gaussian, and of its spherical harmonics.
     pub(super) fn bytes_each(&self) -> [usize; 2] {
-        let words = sh_storage::words(self.sh.0, self.sh.1);
-        [size_of::<Gaussian>(), words * size_of::<u32>()]
+        bytes_each(self.sh)
     }
 
     /// The offsets of its Gaussians, their spherical harmonics and its blocks, bytes.

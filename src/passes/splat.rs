@@ -25,10 +25,6 @@ pub(crate) fn draw(plan: &EyePlan, attachments: Attachments) -> Draw<splat::Prog
         Raster::Mesh => [&splat::FLAT_MESH, &splat::FRAG],
         _ => [&splat::VERT, &splat::FRAG],
     };
-    let depth = match attachments.depth {
-        Some(_) => DepthUse::Tested,
-        None => DepthUse::Ignored,
-    };
     let weight = Weight::from_plan(plan);
     let constants = splat::Constants {
         clip_mode: weight.mode,
@@ -38,11 +34,11 @@ pub(crate) fn draw(plan: &EyePlan, attachments: Attachments) -> Draw<splat::Prog
         decay: weight.decay,
         miss: weight.miss,
         phi_form: weight.phi,
-        depth: depth == DepthUse::Tested,
+        depth: attachments.depth.is_some(),
         boxes: !plan.needs_quads(),
         show: weight::show_code(plan.way.show),
     };
-    Draw::new(shaders, constants, attachments, depth)
+    Draw::new(shaders, constants, attachments, DepthUse::Tested)
 }
 
 /// Draws inside the host's rendering scope. `origin` is where its viewport begins, px; `map` says what the host's depth

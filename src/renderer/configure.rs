@@ -260,7 +260,7 @@ impl Renderer {
     ) -> Result<(Raster, &'static str)> {
         let targets = choose::Targets {
             tiles,
-            hidden: self.desc.depth.is_some_and(|depth| !depth.readable),
+            hidden: self.desc.hides_from_tiles(),
             written: self.writes_depth(),
             converted: targets.convert(settings.show),
             multisampled: self.desc.samples != vk::SampleCountFlags::TYPE_1,

@@ -183,8 +183,8 @@ impl Cut {
 
     /// Records the commands that find what is kept, outside any rendering scope. As long as frames wait to be prepared that
     /// were configured before the cut was configured anew, they are those of the cut as it was for the oldest of these. Where
-    /// they have been recorded already, this records nothing. They begin with the barrier of [`Renderer::prepare`], and the eyes' commands wait
-    /// for them.
+    /// they have been recorded already, this records nothing. They begin with the barrier of [`Renderer::prepare`], and the
+    /// eyes' commands wait for them.
     ///
     /// # Safety
     /// `cmd` is in the recording state, outside a rendering scope, on a queue family with compute, and will be submitted to

@@ -191,8 +191,7 @@ impl RendererDesc {
                 self.color_format
             );
         }
-        if self.color_space == ColorSpace::Linear && self.depth.is_some_and(|depth| !depth.readable)
-        {
+        if self.color_space == ColorSpace::Linear && self.hides_from_tiles() {
             log::warn!(
                 "RendererDesc::color_space is Linear and DepthDesc::readable is not set: only tiles convert colours, and they need \
                  the host's depth before its scope, so that only scenes of linear light will be drawn"
@@ -209,6 +208,11 @@ impl RendererDesc {
         }
         self.depth
             .map_or(Ok(()), |depth| self.check_depth(device, depth))
+    }
+
+    /// True when splats are tested against a depth that tiles cannot read.
+    pub(super) fn hides_from_tiles(&self) -> bool {
+        self.depth.is_some_and(|depth| !depth.readable)
     }
 
     /// True when the device would take colours as they are stored for linear light.

@@ -13,8 +13,8 @@ pub struct HeadlessDesc {
     /// Load the Khronos validation layer with synchronisation checks; any message becomes
     /// [`Error::Validation`](crate::Error::Validation).
     pub validation: bool,
-    /// How buffers are reached, where the device has what that needs. `None` is [what suits the device](Bindings::suiting), but bound under validation, whose
-    /// synchronisation checks cannot watch an address.
+    /// How buffers are reached, where the device has what that needs. `None` is [what suits the device](Bindings::suiting), but
+    /// bound under validation, whose synchronisation checks cannot watch an address.
     pub bindings: Option<Bindings>,
     /// The place in which compiled pipelines are kept from one run to the next.
     pub pipeline_cache: PipelineCache,

@@ -32,3 +32,22 @@ pub(crate) fn run(command: &mut Command, says: &str) {
     let printed = String::from_utf8_lossy(&output.stdout); // glslang complains here
     assert!(output.status.success(), "{says}: {said}{printed}");
 }
+
+/// Runs a host on a device under validation with synchronisation checks; it must report no problem. Returns what it prints.
+pub(crate) fn run_host(host: &mut Command, device: &str) -> String {
+    let output = host
+        .env("RARA_VALIDATION", "1")
+        .env("RARA_DEVICE", device)
+        .env(
+            "VK_LAYER_ENABLES",
+            "VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT",
+        )
+        .output()
+        .expect("the host starts");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        output.status.success() && said.is_empty(),
+        "{host:?}: {said}"
+    );
+    String::from_utf8_lossy(&output.stdout).into_owned()
+}

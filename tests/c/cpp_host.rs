@@ -6,7 +6,7 @@ use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::compiler::{compiler, libraries, root, run};
+use crate::compiler::{compiler, libraries, root, run, run_host};
 use crate::folder::Folder;
 use crate::header::HEADER;
 use rara::glam::DVec3;
@@ -44,20 +44,8 @@ fn compile(compiler: &str, out: PathBuf, library: &[&str]) -> PathBuf {
 /// The picture that the host draws; it must report no problem.
 fn draw(host: &Path, device: &str, scene: &Path, what: &str) -> Vec<u8> {
     let picture = host.with_extension(format!("{what}.ppm"));
-    let output = Command::new(host)
-        .args([scene, &picture])
-        .arg(what)
-        .env("RARA_VALIDATION", "1")
-        .env("RARA_DEVICE", device)
-        .env(
-            "VK_LAYER_ENABLES",
-            "VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT",
-        )
-        .output()
-        .expect("the host starts");
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success() && said.is_empty(), "{what}: {said}");
-    let printed = String::from_utf8_lossy(&output.stdout);
+    let mut host = Command::new(host);
+    let printed = run_host(host.args([scene, &picture]).arg(what), device);
     assert!(
         printed.contains(" visible, ") && printed.contains(" tiles "), // which are the fast way
         "{printed}"

@@ -180,6 +180,14 @@ pub(crate) fn flags(library: &Path, of: &[&str]) -> String {
         .to_owned()
 }
 
+/// Builds a program in C with flags as pkg-config says them, which the shell takes apart where they are quoted.
+pub(crate) fn build(compiler: &str, source: &Path, out: &Path, flags: &str) {
+    let line = format!("\"$0\" -x c \"$1\" -x none -o \"$2\" {flags}");
+    let mut shell = Command::new("sh");
+    shell.args(["-c", &line, compiler]).arg(source).arg(out);
+    run(&mut shell, flags);
+}
+
 #[test]
 fn pkg_config_finds_what_was_installed() {
     let Some(compiler) = compiler("no program was built with what tools/install-c installs") else {
@@ -195,13 +203,7 @@ fn pkg_config_finds_what_was_installed() {
     assert_eq!(flags(&["--modversion"]), env!("CARGO_PKG_VERSION"));
     let program = folder.join("program.c");
     std::fs::write(&program, PROGRAM).expect("a temporary file");
-    // The shell takes apart what pkg-config has quoted.
-    let build = |out: &Path, flags: &str| {
-        let line = format!("\"$0\" -x c \"$1\" -x none -o \"$2\" {flags}");
-        let mut shell = Command::new("sh");
-        shell.args(["-c", &line, &compiler]).arg(&program).arg(out);
-        run(&mut shell, flags);
-    };
+    let build = |out: &Path, flags: &str| build(&compiler, &program, out, flags);
     let shared = folder.join("shared");
     build(&shared, &flags(&["--cflags", "--libs"]));
     assert_runs(Command::new(&shared).env("LD_LIBRARY_PATH", &library));

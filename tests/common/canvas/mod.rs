@@ -234,25 +234,9 @@ impl Canvas {
         assert_eq!(self.desc.depth, vk::Format::D32_SFLOAT);
         let [readback, _] = self.readbacks();
         let submitted = self.device.submit_and_wait(|cmd| {
-            let layers = vk::ImageSubresourceLayers::default()
-                .aspect_mask(vk::ImageAspectFlags::DEPTH)
-                .layer_count(1);
-            let region = vk::BufferImageCopy::default()
-                .image_subresource(layers)
-                .image_extent(self.desc.extent.into());
-            let (image, to) = (self.depth_image(0, 0).image, readback.handle());
-            let visible = [vk::MemoryBarrier2::default()
-                .src_stage_mask(vk::PipelineStageFlags2::ALL_TRANSFER)
-                .src_access_mask(vk::AccessFlags2::TRANSFER_WRITE)
-                .dst_stage_mask(vk::PipelineStageFlags2::HOST)
-                .dst_access_mask(vk::AccessFlags2::HOST_READ)];
-            let info = vk::DependencyInfo::default().memory_barriers(&visible);
+            let depth = self.depth_image(0, 0).image;
             // SAFETY: `cmd` is recording; the frame before left the image ready to be copied.
-            unsafe {
-                self.raw
-                    .cmd_copy_image_to_buffer(cmd, image, COPIED, to, &[region]);
-                self.raw.cmd_pipeline_barrier2(cmd, &info);
-            }
+            unsafe { self.copy_for_host(cmd, (depth, vk::ImageAspectFlags::DEPTH), &readback) };
             Ok(())
         });
         submitted.expect("submits");
@@ -337,23 +321,37 @@ impl Canvas {
             for (image, buffer) in colors.iter().zip(readbacks) {
                 let Some(image) = image else { continue };
                 self.turn(cmd, image, COLOR, COPIED);
-                let region = vk::BufferImageCopy::default()
-                    .image_subresource(
-                        vk::ImageSubresourceLayers::default()
-                            .aspect_mask(vk::ImageAspectFlags::COLOR)
-                            .layer_count(1),
-                    )
-                    .image_extent(self.desc.extent.into());
-                let to = buffer.handle();
-                self.raw
-                    .cmd_copy_image_to_buffer(cmd, image.raw, COPIED, to, &[region]);
+                self.copy_for_host(cmd, (image.raw, vk::ImageAspectFlags::COLOR), buffer);
             }
-            let visible = [vk::MemoryBarrier2::default()
-                .src_stage_mask(vk::PipelineStageFlags2::ALL_TRANSFER)
-                .src_access_mask(vk::AccessFlags2::TRANSFER_WRITE)
-                .dst_stage_mask(vk::PipelineStageFlags2::HOST)
-                .dst_access_mask(vk::AccessFlags2::HOST_READ)];
-            let info = vk::DependencyInfo::default().memory_barriers(&visible);
+        }
+    }
+
+    /// Copies an image to where the host reads it after the submission.
+    ///
+    /// # Safety
+    /// `cmd` is recording, and the image is ready to be copied.
+    unsafe fn copy_for_host(
+        &self,
+        cmd: vk::CommandBuffer,
+        (image, aspect): (vk::Image, vk::ImageAspectFlags),
+        to: &rara_gpu::Buffer,
+    ) {
+        let layers = vk::ImageSubresourceLayers::default()
+            .aspect_mask(aspect)
+            .layer_count(1);
+        let region = vk::BufferImageCopy::default()
+            .image_subresource(layers)
+            .image_extent(self.desc.extent.into());
+        let visible = [vk::MemoryBarrier2::default()
+            .src_stage_mask(vk::PipelineStageFlags2::ALL_TRANSFER)
+            .src_access_mask(vk::AccessFlags2::TRANSFER_WRITE)
+            .dst_stage_mask(vk::PipelineStageFlags2::HOST)
+            .dst_access_mask(vk::AccessFlags2::HOST_READ)];
+        let info = vk::DependencyInfo::default().memory_barriers(&visible);
+        // SAFETY: the caller vouches for `cmd` and the image; the buffer is alive.
+        unsafe {
+            self.raw
+                .cmd_copy_image_to_buffer(cmd, image, COPIED, to.handle(), &[region]);
             self.raw.cmd_pipeline_barrier2(cmd, &info);
         }
     }

@@ -217,8 +217,9 @@ fn constants(constants: &[Constant]) -> String {
         };
         write!(words, "({id}, self.{name}{word}), ").unwrap();
     }
+    let count = constants.len();
     out + &format!(
-        "}}\nimpl super::ConstantSet for Constants {{\n\
+        "}}\nconst _: () = assert!({count} <= super::MAX_CONSTANTS);\nimpl super::ConstantSet for Constants {{\n\
          fn list(self) -> super::ConstantList {{ super::ConstantList::from_slice(&[{words}]) }}\n}}\n"
     )
 }

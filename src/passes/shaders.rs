@@ -8,8 +8,11 @@ use rara_gpu::{BufferAccess, BufferUse, MAX_BUFFERS, Shader};
 /// The buffers of a program in the order of their bindings.
 pub(crate) type BufferList<B> = SmallVec<[B; MAX_BUFFERS]>;
 
-/// Specialisation constants: id and value. No program has more, so that a list needs no memory of its own.
-pub(crate) type ConstantList = SmallVec<[(u32, u32); 15]>;
+/// The most specialisation constants that a program has, so that a list of them needs no memory of its own.
+pub(crate) const MAX_CONSTANTS: usize = 20;
+
+/// Specialisation constants: id and value.
+pub(crate) type ConstantList = SmallVec<[(u32, u32); MAX_CONSTANTS]>;
 
 /// The declarations of a program's shaders to the host.
 pub(crate) trait Interface {

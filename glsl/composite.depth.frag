@@ -4,15 +4,12 @@
 #include "composite.glsl"
 #include "host_depth.glsl"
 
-layout(constant_id = 3) const bool BEHIND_EXPECTED = false; // expected depths lie before them
-
 void main() {
     uint at;
     if (!find_pixel(at)) {
         discard;
     }
-    uint expected = BEHIND_EXPECTED ? (pixels_end() + 1u) / 2u : 0u;
-    float depth = picture.at[pixels_end() + expected + at / 4u][at % 4u];
+    float depth = uintBitsToFloat(behind(at, WRITTEN_WORDS));
     if (depth == NO_DEPTH) {
         discard;
     }

@@ -7,7 +7,7 @@
 
 layout(constant_id = 0) const bool LINEAR = false; // what was blended as stored becomes linear light
 layout(constant_id = 1) const bool STORED = false; // linear light becomes what is stored
-layout(constant_id = 2) const bool EXPECTED_DEPTH = false; // draws expected depths: depth times alpha, and alpha
+layout(constant_id = 2) const bool DEPTHS = false; // draws expected depths: depth times alpha, and alpha
 
 layout(location = 0) out vec4 colour;
 
@@ -27,9 +27,8 @@ void main() {
     uint at;
     colour = vec4(0.0);
     if (find_pixel(at)) {
-        if (EXPECTED_DEPTH) {
-            vec4 pair = picture.at[pixels_end() + at / 2u];
-            vec2 sums = at % 2u == 0u ? pair.xy : pair.zw;
+        if (DEPTHS) {
+            vec2 sums = uintBitsToFloat(uvec2(behind(2u * at, EXPECTED_WORDS), behind(2u * at + 1u, EXPECTED_WORDS)));
             colour = vec4(sums.x * push.params.unit, sums.y, 0.0, sums.y);
         } else {
             colour = picture.at[at];

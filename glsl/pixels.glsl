@@ -3,6 +3,7 @@
 #ifndef RARA_PIXELS
 #define RARA_PIXELS
 #include "frame.glsl"
+#include "behind.glsl"
 
 layout(constant_id = 10) const uint PIXELS = PIXELS_FLOAT; // PIXELS_*
 
@@ -19,19 +20,9 @@ void write_pixel(uint at, vec4 colour) {
     }
 }
 
-// Writes a pixel's expected depth, which has its place behind all pixels: the sum of its splats' depths, each times what it adds to
-// the pixel's alpha, and that alpha.
-void write_expected_depth(uint at, uint pixel_count, vec2 sums) {
-    uint place = (PIXELS == PIXELS_BYTE ? 1u : 4u) * pixel_count + 2u * at;
-    picture_words.at[place] = floatBitsToUint(sums.x);
-    picture_words.at[place + 1u] = floatBitsToUint(sums.y);
-}
-
-// Writes a pixel's depth for the host's depth buffer, which has its place behind the expected ones. The picture of a host with such a
-// buffer has pixels of floats.
-void write_depth(uint at, uint pixel_count, float depth) {
-    uint expected = EXPECTED_DEPTH ? (pixel_count + 1u) / 2u : 0u;
-    picture_words.at[4u * (pixel_count + expected) + at] = floatBitsToUint(depth);
+// Writes a word of a pixel, of the part that begins after so many words of all pixels.
+void write_behind(uint at, uint pixel_count, uint words, uint word) {
+    picture_words.at[((PIXELS == PIXELS_BYTE ? 1u : 4u) + words) * pixel_count + at] = word;
 }
 
 #endif

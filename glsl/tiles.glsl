@@ -29,10 +29,7 @@ layout(constant_id = 9) const uint SHOW = SHOW_COLOUR; // SHOW_*
 // True where the tiles that hold anything are listed: first those that need no code for several surfaces, then, from the end on,
 // the others, and behind all of them how many each list has.
 layout(constant_id = 11) const bool LISTED = false;
-// True where each pixel's expected depth is found too.
-layout(constant_id = 17) const bool EXPECTED_DEPTH = false;
-// True where each pixel's depth for the host's depth buffer is found too.
-layout(constant_id = 18) const bool WRITTEN_DEPTH = false;
+#include "behind.glsl"
 const bool FINDS_DEPTH = EXPECTED_DEPTH || WRITTEN_DEPTH;
 
 BUFFER(readonly, 1, vec4, splats)
@@ -60,6 +57,8 @@ float alphas[SHOW >= SHOW_MEAN ? ROWS : 1u]; // their sum, or the most that one 
 float occluder[ROWS]; // the farness beyond which splats are hidden
 float depths[EXPECTED_DEPTH ? ROWS : 1u]; // the sum of their splats' depths, each times what it adds to the alpha
 float written[WRITTEN_DEPTH ? ROWS : 1u]; // the depth of the splat that makes them as opaque as is asked for
+uint strongest[STRONGEST ? ROWS : 1u]; // the number of the splat that has added most to their alpha
+float most_added[STRONGEST ? ROWS : 1u]; // how much that is
 bool done; // no splat changes them any more
 
 // The part of a splat that the loop reads.
@@ -73,6 +72,8 @@ struct Seen {
 };
 // How deep it is, where depths are found.
 SplatDepth seen_depth;
+// Its number, where the strongest ones are.
+uint seen_number;
 #include "tile_batch.glsl"
 
 // Applies a cut splat's weights to its alphas, and returns them in `weight`.
@@ -167,6 +168,11 @@ void add(Seen splat, float here[ROWS], float alpha[ROWS], float weight[ROWS]) {
         if (WRITTEN_DEPTH && transmittance[row] > EYE.tiles.written_transmittance
             && transmittance[row] - added <= EYE.tiles.written_transmittance) {
             written[row] = here[row];
+        }
+        // Of equal ones the first counts, which is in front.
+        if (STRONGEST && added > most_added[row]) {
+            most_added[row] = added;
+            strongest[row] = seen_number;
         }
         transmittance[row] -= added;
         most = max(most, transmittance[row]);
@@ -288,6 +294,10 @@ void main() {
         if (WRITTEN_DEPTH) {
             written[row] = NO_DEPTH;
         }
+        if (STRONGEST) {
+            strongest[row] = NO_SPLAT;
+            most_added[row] = 0.0;
+        }
         occluder[row] = DEPTH_FORM != DEPTH_NONE ? occluder_farness(pixel + uvec2(0u, row)) : 0.0;
     }
     for (uint first = begin; first < end && !all_done(); first += BATCH) {
@@ -309,6 +319,9 @@ void main() {
             Seen splat = taken_over(i);
             if (FINDS_DEPTH) {
                 seen_depth.mean = mean_depth_taken_over(i);
+            }
+            if (STRONGEST) {
+                seen_number = tile_splats.at[first + i];
             }
             vec2 delta = pixel_centre - splat.centre_conic.xy;
             if (WHOLE_ALONE && splat.linear.x == Z_WHOLE) {
@@ -333,10 +346,15 @@ void main() {
             uint at = (pixel.y + row) * size.x + pixel.x;
             write_pixel(at, vec4(colour, alpha));
             if (EXPECTED_DEPTH) {
-                write_expected_depth(at, size.x * size.y, vec2(depths[row], 1.0 - transmittance[row]));
+                uint pair = 2u * at;
+                write_behind(pair, size.x * size.y, EXPECTED_WORDS, floatBitsToUint(depths[row]));
+                write_behind(pair + 1u, size.x * size.y, EXPECTED_WORDS, floatBitsToUint(1.0 - transmittance[row]));
             }
             if (WRITTEN_DEPTH) {
-                write_depth(at, size.x * size.y, written[row]);
+                write_behind(at, size.x * size.y, WRITTEN_WORDS, floatBitsToUint(written[row]));
+            }
+            if (STRONGEST) {
+                write_behind(at, size.x * size.y, STRONGEST_WORDS, strongest[row]);
             }
         }
     }

@@ -106,6 +106,15 @@ struct LayerView {
     uint pad[3]; // unused
 };
 
+// How the pixels of a layer have moved since the frame before. A point that is seen in pixel x, y at depth z was seen before
+// where (x, y, 1) + (right, down, depth) is, less x, y and 1: each is the change of a row of the map from (x z, y z, z, 1) to the
+// pixel before times its depth. Of an orthographic camera it maps (x, y, z, 1), and depth does not change.
+struct LayerMotion {
+    vec4 right;
+    vec4 down;
+    vec4 depth;
+};
+
 // The Gaussians of a layer, and how visible they are.
 struct LayerContent {
     uint first_block; // its first block; the next layer's first one is behind its last

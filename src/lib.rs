@@ -70,8 +70,8 @@ pub use rara_scene::{
     ShFormat, Shape, Show, SortBy, Surface, TargetFormat, Training,
 };
 pub use renderer::{
-    ColorSpace, ConfiguredFrame, Cut, DepthDesc, ExpectedDepthDesc, FrameLimits, Kept, Outcome,
-    Pick, PickTicket, Picker, Picks, PreparedFrame, Renderer, RendererDesc,
+    ColorSpace, ConfiguredFrame, Cut, DepthDesc, ExpectedDepthDesc, FrameLimits, Kept, MotionDesc,
+    Outcome, Pick, PickTicket, Picker, Picks, PreparedFrame, Renderer, RendererDesc,
 };
 pub use session::{Headless, HeadlessDesc, StoredPicture};
 pub use stats::{FrameStats, PassTime, RasterChoice};

@@ -195,6 +195,25 @@ pub unsafe extern "C" fn rara_renderer_draw_depth(
     draw(renderer, cmd, [x, y], frame, Renderer::draw_depth)
 }
 
+/// Records a frame's motion inside a rendering scope of its own, with a colour attachment of motion_format and, if there is one,
+/// the same depth attachment. Red and green are where what a pixel shows was in the frame that this renderer has prepared
+/// before, less where it is, px to the right and down; blue is the number of its layer, and alpha is 1. A pixel shows the splat that
+/// adds most to its alpha. Pixels whose alpha is below motion_least_alpha keep what the host has drawn. Motion is 0 where
+/// there is no frame before. `x` and `y` are as for rara_renderer_draw.
+///
+/// # Safety
+/// As for rara_renderer_draw, in such a scope.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_renderer_draw_motion(
+    renderer: *mut RaraRenderer,
+    cmd: vk::CommandBuffer,
+    x: f32,
+    y: f32,
+    frame: *const RaraFrame,
+) -> RaraResult {
+    draw(renderer, cmd, [x, y], frame, Renderer::draw_motion)
+}
+
 /// Ends a frame, prepared or not; null is ignored. The memory of a frame that the device works on stays until it is done.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_frame_destroy(frame: *mut RaraFrame) {

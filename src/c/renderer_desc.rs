@@ -2,7 +2,7 @@
 
 use rara::ash::vk;
 use rara::gpu::{Bindings, Target};
-use rara::{ColorSpace, ExpectedDepthDesc, RendererDesc, Result};
+use rara::{ColorSpace, ExpectedDepthDesc, MotionDesc, RendererDesc, Result};
 
 use crate::boundary::{RaraResult, Versioned, exclusive, guard, invalid, read, versioned, write};
 use crate::depth::{self, RaraDepthDesc};
@@ -87,6 +87,15 @@ pub struct RaraRendererDesc {
     /// True to count also what the stages do, for rara_renderer_pass_statistics: with timing, and where RaraAdoptDesc has
     /// pipeline_statistics. No query of the host's for such statistics is active around the recorded calls then. Default: false.
     pub statistics: vk::Bool32,
+    /// Format of the target of rara_renderer_draw_motion, two float channels or more; VK_FORMAT_UNDEFINED, the default, if that
+    /// function is not called. The third is for the layer's number, which 16 bits hold exactly up to 2048.
+    pub motion_format: vk::Format,
+    /// The alpha, from 0 to 1, from which a pixel of splats gets their motion. Default: 0.5.
+    pub motion_least_alpha: f32,
+    /// Like render_pass, for that target.
+    pub motion_render_pass: vk::RenderPass,
+    /// The subpass of motion_render_pass to draw in.
+    pub motion_subpass: u32,
 }
 
 versioned!(RaraRendererDesc);
@@ -97,6 +106,7 @@ impl RaraRendererDesc {
             color_format,
             samples: vk::SampleCountFlags::TYPE_1,
             frames_in_flight: 1,
+            motion_least_alpha: MotionDesc::new(color_format).least_alpha,
             ..Versioned::BLANK
         }
     }
@@ -133,6 +143,12 @@ pub(crate) unsafe fn renderer_desc(desc: *const RaraRendererDesc) -> Result<Rend
         let target = target(pass, subpass);
         ExpectedDepthDesc::new(desc.expected_depth_format).target(target)
     });
+    let draws_motion = desc.motion_format != vk::Format::UNDEFINED;
+    let motion = draws_motion.then(|| {
+        let target = target(desc.motion_render_pass, desc.motion_subpass);
+        let motion = MotionDesc::new(desc.motion_format).target(target);
+        motion.least_alpha(desc.motion_least_alpha)
+    });
     let bindings = match desc.bindings {
         RARA_BINDINGS_ADDRESS => Bindings::Address,
         RARA_BINDINGS_BOUND => Bindings::Bound,
@@ -150,6 +166,7 @@ pub(crate) unsafe fn renderer_desc(desc: *const RaraRendererDesc) -> Result<Rend
         .depth(depth)
         .samples(desc.samples)
         .expected_depth(expected_depth)
+        .motion(motion)
         .target(target)
         .bindings(bindings)
         .timing(desc.timing != 0)

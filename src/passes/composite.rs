@@ -11,7 +11,7 @@ use crate::passes::stage::Targets;
 use crate::passes::storage::buffers;
 use crate::passes::{shared, tiles};
 use crate::types::FrameCounts;
-use rara_gpu::{Attachments, DepthUse, Drawer};
+use rara_gpu::{Attachments, Buffer, DepthUse, Drawer};
 use rara_scene::depth::DepthMap;
 
 /// What is drawn of the tiles' picture.
@@ -36,8 +36,11 @@ pub(crate) fn draw(plan: &EyePlan, targets: Targets, part: Part) -> Draw<composi
     let constants = composite::Constants {
         linear: converts && targets.linear,
         stored: converts && !targets.linear,
-        expected_depth: matches!(part, Part::ExpectedDepth(_)),
-        behind_expected: part == Part::WrittenDepth && plan.way.expects_depth,
+        depths: matches!(part, Part::ExpectedDepth(_)),
+        // What lies behind the pixels concerns those who read it.
+        expected_depth: part != Part::Colours && plan.way.expects_depth,
+        written_depth: part != Part::Colours && plan.way.writes_depth,
+        strongest: false,
     };
     Draw::new([&composite::VERT, fragment], constants, attachments, depth)
 }
@@ -56,10 +59,6 @@ pub(crate) fn record(
         lists::MEMORY => [tile_begins];
         picture: &tiles::MEMORY.tile_picture,
     });
-    let args = (
-        b.get(&shared::MEMORY.counts),
-        offset_of!(FrameCounts, composite) as u64,
-    );
     let [depth_offset, depth_scale] = map.map_or([0.0; 2], |map| map.factors());
     let params = composite::Params {
         origin,
@@ -68,5 +67,11 @@ pub(crate) fn record(
         depth_scale,
     };
     let buffers = (buffers, |storage| b.get(storage));
-    draw.draw(pipelines, drawer, buffers, params, args);
+    draw.draw(pipelines, drawer, buffers, params, args(b));
+}
+
+/// The indirect draw of the tiles' picture.
+pub(super) fn args(b: &Buffers<EyePlan>) -> (&Buffer, u64) {
+    let counts = b.get(&shared::MEMORY.counts);
+    (counts, offset_of!(FrameCounts, composite) as u64)
 }

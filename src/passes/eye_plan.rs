@@ -60,6 +60,8 @@ pub(crate) struct Way {
     pub(crate) expects_depth: bool,
     /// True when depths for the host's depth buffer are.
     pub(crate) writes_depth: bool,
+    /// True when the pixels' motion is.
+    pub(crate) draws_motion: bool,
     /// Colours, or a debug view.
     pub(crate) show: Show,
     pub(crate) colours: SplatColours,
@@ -88,6 +90,8 @@ pub(crate) struct EyeFacts<'a> {
     pub(crate) expects_depth: bool,
     /// The alpha of the pixels whose depths are written into the host's depth buffer, if any are.
     pub(crate) write_alpha: Option<f32>,
+    /// True when the pixels' motion is wanted.
+    pub(crate) draws_motion: bool,
     /// The camera of whose picture the frame shows a part; `None` where it shows all of it.
     pub(crate) whole: Option<&'a Camera>,
     pub(crate) colours: SplatColours,
@@ -133,6 +137,7 @@ impl EyePlan {
                 sort_passes: keys.passes(),
                 expects_depth: eye.expects_depth,
                 writes_depth: write_alpha.is_some(),
+                draws_motion: eye.draws_motion && is_tiled,
                 show: settings.show,
                 colours: match settings.show {
                     Show::Strongest => SplatColours::Numbers,
@@ -238,7 +243,7 @@ impl EyePlan {
 
     /// True when the splats' depths in their pixels are found.
     pub(crate) fn finds_depth(&self) -> bool {
-        self.way.expects_depth || self.way.writes_depth
+        self.way.expects_depth || self.way.writes_depth || self.way.draws_motion
     }
 
     /// True when splats' rectangles of tiles are kept, and masks of their tiles only where these do not tell everything.

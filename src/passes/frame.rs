@@ -19,10 +19,10 @@ use crate::passes::stage::{Stage, Targets};
 use crate::passes::storage::Storage;
 use crate::passes::work::Work;
 use crate::passes::{
-    bin, blocks, classify, clip, compact, composite, cutoff, depth, project, reclip, shared, sort,
-    splat, tiles,
+    bin, blocks, classify, clip, compact, composite, cutoff, depth, motion, project, reclip,
+    shared, sort, splat, tiles,
 };
-use crate::types::{FrameData, LayerData};
+use crate::types::{FrameData, LayerData, LayerMotion};
 use rara_gpu::{Buffer, Recorder};
 
 /// The stages of a cut. They come before those of the eyes that see it.
@@ -139,13 +139,13 @@ pub(crate) fn record_cut(plan: &CutPlan, recorder: &mut Recorder<'_>, resources:
 }
 
 /// Records everything up to the draw. The frame's cut is recorded with it where that is its own. `readback` gets a copy of the
-/// counts for the host.
+/// counts for the host; `motions` are those of the layers, where they are drawn.
 pub(crate) fn record(
     plan: &EyePlan,
     recorder: &mut Recorder<'_>,
     resources: EyeResources<'_>,
     owns_cut: bool,
-    readback: &Buffer,
+    (readback, motions): (&Buffer, &[LayerMotion]),
 ) {
     let b = resources.buffers;
     let shared = &shared::MEMORY;
@@ -157,6 +157,10 @@ pub(crate) fn record(
             }
             write_frame(plan, r, frame);
         });
+    }
+    if plan.way.draws_motion {
+        let target = b.get(&tiles::MEMORY.motions);
+        recorder.label("motion", |r| r.update(target, 0, cast_slice(motions)));
     }
     if owns_cut {
         record_stages(
@@ -184,9 +188,12 @@ pub(crate) fn record(
         &splats.quads,
         sort::order(plan),
         &cutoff::MEMORY.cut_records,
+        &compact::MEMORY.splat_gaussians,
+        &tiles::MEMORY.motions,
+        &shared.frame,
+        &shared.counts,
     ];
-    let [splats, quads, order, cut_records] = drawn.map(|s| b.get(s));
-    recorder.ready_to_draw(&[frame, counts, splats, quads, order, cut_records]);
+    recorder.ready_to_draw(&drawn.map(|s| b.get(s)));
 }
 
 fn record_stages<P: Owner>(recording: &mut Recording<'_, '_, P>, stages: &[&Stage<P>]) {
@@ -229,6 +236,9 @@ impl EyePlan {
         }
         if self.way.writes_depth {
             need(composite::draw(self, targets, Part::WrittenDepth).key());
+        }
+        if let Some(attachments) = targets.motion.filter(|_| self.way.draws_motion) {
+            need(motion::draw(self, attachments).key());
         }
         if let Some(attachments) = targets.expected_depth {
             need(depth::draw(self, attachments).key());

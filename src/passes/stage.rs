@@ -45,6 +45,8 @@ pub(crate) struct Targets {
     pub(crate) colour: Attachments,
     /// Those of expected depths, where they are drawn.
     pub(crate) expected_depth: Option<Attachments>,
+    /// Those of motion, where it is drawn.
+    pub(crate) motion: Option<Attachments>,
     /// True when the host's colours are linear light.
     pub(crate) linear: bool,
     /// True when those of the splats are.

@@ -14,7 +14,7 @@ use crate::passes::tile_picture::TilePicture;
 use crate::passes::weight::{self, Weight};
 use crate::passes::work::Work;
 use crate::passes::{cutoff, project, reclip, shared};
-use crate::types;
+use crate::types::{self, LayerMotion};
 use rara_base::limits;
 use rara_gpu::{Buffer, DeviceShape};
 
@@ -27,20 +27,28 @@ pub(crate) static STAGE: Stage<EyePlan> = Stage {
 };
 
 memory! { EyePlan:
-    /// The picture that the tiles make, behind it the expected depths of its pixels, two of them to a vector, and behind those
-    /// the depths for the host's depth buffer, four to a vector.
-    tile_picture: |plan| plan.when_tiled(plan.pixels() * plan.way.tile_pixels.bytes() + depths(plan)),
+    /// The picture that the tiles make, and behind it what else they find of each pixel, as `behind.glsl` says.
+    tile_picture: |plan| plan.when_tiled(plan.pixels() * plan.way.tile_pixels.bytes() + behind(plan)),
         in EyePlan::picture_location;
+    /// How each layer has moved since the frame before.
+    motions: |plan| match plan.way.draws_motion {
+        true => u64::from(plan.cut.data.scene.layer_count) * size_of::<LayerMotion>() as u64,
+        false => 0,
+    };
     /// The host's depth; empty where it hides nothing.
     occluders: |plan| plan.occluders.map_or(0, |_| plan.when_tiled(4 * plan.pixels()));
 }
 
-/// The bytes of the depths of all pixels, as far as such are found.
-fn depths(plan: &EyePlan) -> u64 {
-    let found = [(plan.way.expects_depth, 2), (plan.way.writes_depth, 4)];
-    let vectors = found
-        .map(|(is_found, to_a_vector)| u64::from(is_found) * plan.pixels().div_ceil(to_a_vector));
-    16 * vectors.iter().sum::<u64>()
+/// The bytes behind the pixels, whole vectors.
+fn behind(plan: &EyePlan) -> u64 {
+    let way = &plan.way;
+    let parts = [
+        (way.expects_depth, 2),
+        (way.writes_depth, 1),
+        (way.draws_motion, 1),
+    ];
+    let words = parts.map(|(is_found, words)| u64::from(is_found) * words);
+    16 * (words.iter().sum::<u64>() * plan.pixels()).div_ceil(4)
 }
 
 /// The tiles that a dispatch draws: all, or with the pipelines for GPUs one of the two lists of those that hold anything.
@@ -89,6 +97,7 @@ fn pipeline(plan: &EyePlan, list: List) -> Pipeline<tiles::Program> {
         listed: list != List::All,
         expected_depth: plan.way.expects_depth,
         written_depth: plan.way.writes_depth,
+        strongest: plan.way.draws_motion,
     };
     let shader = if work.subgroups {
         &tiles::SUBGROUP_COMP

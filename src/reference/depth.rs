@@ -181,12 +181,18 @@ pub fn expected<'a, T: Real>(
     settings: &Settings,
 ) -> Vec<[f64; 2]> {
     let mut pixels = vec![[0.0; 2]; (camera.width * camera.height) as usize];
-    for_each_depth::<T>(&scene.into(), camera, clip, settings, |at, alpha, depth| {
-        let [sum, coverage] = &mut pixels[at];
-        let part = (1.0 - *coverage) * alpha;
-        *sum += part * depth;
-        *coverage += part;
-    });
+    for_each_depth::<T>(
+        &scene.into(),
+        camera,
+        clip,
+        settings,
+        |at, alpha, (depth, _)| {
+            let [sum, coverage] = &mut pixels[at];
+            let part = (1.0 - *coverage) * alpha;
+            *sum += part * depth;
+            *coverage += part;
+        },
+    );
     pixels
 }
 
@@ -199,23 +205,73 @@ pub fn reaching<'a, T: Real>(
     least: f64,
 ) -> Vec<Option<f64>> {
     let mut pixels = vec![(0.0, None); (camera.width * camera.height) as usize];
-    for_each_depth::<T>(&scene.into(), camera, clip, settings, |at, alpha, depth| {
-        let (coverage, reached) = &mut pixels[at];
-        *coverage += (1.0 - *coverage) * alpha;
-        if *coverage >= least {
-            reached.get_or_insert(depth);
-        }
-    });
+    for_each_depth::<T>(
+        &scene.into(),
+        camera,
+        clip,
+        settings,
+        |at, alpha, (depth, _)| {
+            let (coverage, reached) = &mut pixels[at];
+            *coverage += (1.0 - *coverage) * alpha;
+            if *coverage >= least {
+                reached.get_or_insert(depth);
+            }
+        },
+    );
     pixels.into_iter().map(|(_, reached)| reached).collect()
 }
 
-/// Calls a function with the number of a pixel, and the alpha and depth there of a splat, for all splats front to back.
+/// What the splat that adds most to a pixel's alpha has there.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Strongest {
+    /// What it adds.
+    pub added: f64,
+    /// Its depth.
+    pub depth: f64,
+    /// The number of its layer.
+    pub layer: usize,
+    /// The alpha of the whole pixel.
+    pub coverage: f64,
+}
+
+/// A picture of the splats that add most to their pixels' alpha.
+pub fn strongest<'a, T: Real>(
+    scene: impl Into<Scene<'a>>,
+    camera: &Camera,
+    clip: &Clip,
+    settings: &Settings,
+) -> Vec<Strongest> {
+    let mut pixels = vec![Strongest::default(); (camera.width * camera.height) as usize];
+    for_each_depth::<T>(
+        &scene.into(),
+        camera,
+        clip,
+        settings,
+        |at, alpha, (depth, layer)| {
+            let pixel = &mut pixels[at];
+            let added = (1.0 - pixel.coverage) * alpha;
+            let coverage = pixel.coverage + added;
+            if added > pixel.added {
+                *pixel = Strongest {
+                    added,
+                    depth,
+                    layer,
+                    coverage,
+                };
+            }
+            pixel.coverage = coverage;
+        },
+    );
+    pixels
+}
+
+/// Calls a function with the number of a pixel, and a splat's alpha there, its depth and its layer, for all splats front to back.
 fn for_each_depth<T: Real>(
     scene: &Scene<'_>,
     camera: &Camera,
     clip: &Clip,
     settings: &Settings,
-    mut see: impl FnMut(usize, f64, f64),
+    mut see: impl FnMut(usize, f64, (f64, usize)),
 ) {
     let layers = layer::layers(scene, camera, clip);
     let sides: Vec<_> = layers
@@ -250,7 +306,7 @@ fn for_each_depth<T: Real>(
                 let (dx, dy) = (offset(x, 0), offset(y, 1));
                 if let Some(alpha) = splat::alpha(splat, dx, dy, settings.decay_law()) {
                     let at = (y * width + x) as usize;
-                    see(at, alpha.wide(), depth.mean(dx, dy).wide());
+                    see(at, alpha.wide(), (depth.mean(dx, dy).wide(), layer));
                 }
             }
         }

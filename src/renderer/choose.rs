@@ -13,8 +13,8 @@ pub(super) struct Targets {
     /// True when splats are tested against a depth that tiles cannot read.
     pub(super) hidden: bool,
     pub(super) multisampled: bool,
-    /// True when the splats' depths are written into the host's depth buffer.
-    pub(super) written: bool,
+    /// True when the host gets more than colours and expected depths: depths for its depth buffer, or motion.
+    pub(super) beside: bool,
     /// True when colours become linear light, or are stored, once splats are blended.
     pub(super) converted: bool,
 }
@@ -48,12 +48,14 @@ pub(super) fn raster(
                 settings.show
             )));
         }
-        _ if targets.written && !can_tile => {
+        _ if targets.beside && !can_tile => {
             return Err(Error::Invalid(
-                "only tiles can write depths (DepthDesc::write_alpha); use Raster::Auto or Raster::Tiles".into(),
+                "only tiles can write depths (DepthDesc::write_alpha) and find motion (RendererDesc::motion); use Raster::Auto \
+                 or Raster::Tiles"
+                    .into(),
             ));
         }
-        Raster::Auto if needs_tiles || targets.written => {
+        Raster::Auto if needs_tiles || targets.beside => {
             (Raster::Tiles, "only tiles show what is asked for")
         }
         Raster::Mesh if !support.mesh_shader => {

@@ -13,7 +13,7 @@ use super::pair_room::Retry;
 use super::request::{FrameRequest, Kept};
 use super::{ConfiguredFrame, Renderer, out_of_order};
 use crate::passes::{
-    CutPlan, EyeFacts, EyePlan, Occluders, PreviousFrame, SceneBuffers, Sizes, SplatColours,
+    CutPlan, EyeFacts, EyePlan, Occluders, PreviousFrame, SceneBuffers, Sight, Sizes, SplatColours,
     Targets, TilePixels, TileWork, Work,
 };
 use rara_base::error::{Error, Result};
@@ -174,6 +174,7 @@ impl Renderer {
             targets,
             depth_map,
             unit: self.placement.scale(),
+            sight: self.desc.motion.map(|_| Sight::new(facts.layers, camera)),
             redrawn,
             needs_tiles,
             is_first_use: false,
@@ -196,7 +197,7 @@ impl Renderer {
                 return Ok(decision);
             };
             let has_lists = decision.plan.is_tiled();
-            let can_be_quads = !decision.needs_tiles && !self.writes_depth();
+            let can_be_quads = !decision.needs_tiles && !self.draws_beside();
             let budget = self.device.memory_budget();
             match self.pairs.retry(error, budget, has_lists, can_be_quads)? {
                 Retry::Smaller => {}
@@ -261,7 +262,7 @@ impl Renderer {
         let targets = choose::Targets {
             tiles,
             hidden: self.desc.hides_from_tiles(),
-            written: self.writes_depth(),
+            beside: self.draws_beside(),
             converted: targets.convert(settings.show),
             multisampled: self.desc.samples != vk::SampleCountFlags::TYPE_1,
         };
@@ -269,11 +270,10 @@ impl Renderer {
         choose::raster(settings, device.support(), device.shape(), targets)
     }
 
-    /// True when tiles find depths for the host's depth buffer.
-    fn writes_depth(&self) -> bool {
-        self.desc
-            .depth
-            .is_some_and(|depth| depth.write_alpha.is_some())
+    /// True when the host gets more than colours and expected depths: depths for its depth buffer, or motion.
+    fn draws_beside(&self) -> bool {
+        let depth = self.desc.depth;
+        self.desc.motion.is_some() || depth.is_some_and(|depth| depth.write_alpha.is_some())
     }
 
     /// The map from a depth in the scene's units to the host's depth buffer.
@@ -287,6 +287,7 @@ impl Renderer {
         Targets {
             colour: self.desc.attachments(),
             expected_depth: self.desc.expected_depth_attachments(),
+            motion: self.desc.motion_attachments(),
             linear: self.desc.color_space == ColorSpace::Linear,
             draws_linear,
         }
@@ -314,6 +315,7 @@ impl Renderer {
                 .map(|(depth, map)| Occluders::new(depth.format, map)),
             expects_depth: self.desc.expected_depth.is_some(),
             write_alpha: readable.and_then(|depth| depth.write_alpha),
+            draws_motion: self.desc.motion.is_some(),
             whole: None,
             colours: SplatColours::Scene,
         }

@@ -41,6 +41,9 @@ setters! {
         /// The target of [`Renderer::draw_depth`](super::Renderer::draw_depth); `None` where that is not called, and then
         /// costs nothing.
         pub expected_depth: Option<ExpectedDepthDesc>,
+        /// The target of [`Renderer::draw_motion`](super::Renderer::draw_motion); `None` where that is not called, and then
+        /// costs nothing.
+        pub motion: Option<MotionDesc>,
         /// Samples a pixel of the attachments. A splat's colour is computed once a pixel, its depth is tested for each sample.
         pub samples: vk::SampleCountFlags,
         /// Dynamic rendering, or a classic render pass.
@@ -116,6 +119,35 @@ impl ExpectedDepthDesc {
     }
 }
 
+/// The target of motion.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct MotionDesc {
+    /// Format of the scope's only colour attachment: blendable, of two floats or more; the third is for the layer's number, which
+    /// 16 bits hold exactly up to 2048.
+    pub format: vk::Format,
+    /// The alpha, from 0 to 1, from which a pixel of splats gets their motion; others keep what the host has drawn.
+    pub least_alpha: f32,
+    /// Dynamic rendering, or a classic render pass of its own.
+    pub target: Target,
+}
+
+setters!(MotionDesc {
+    least_alpha: f32,
+    target: Target,
+});
+
+impl MotionDesc {
+    /// A target in dynamic rendering, of pixels that splats cover by half or more.
+    pub const fn new(format: vk::Format) -> Self {
+        Self {
+            format,
+            least_alpha: 0.5,
+            target: Target::DYNAMIC,
+        }
+    }
+}
+
 impl DepthDesc {
     /// An attachment without stencil, and not readable.
     pub const fn new(format: vk::Format, map: DepthMap) -> Self {
@@ -141,6 +173,7 @@ impl RendererDesc {
             color_space: ColorSpace::Stored,
             depth: None,
             expected_depth: None,
+            motion: None,
             samples: vk::SampleCountFlags::TYPE_1,
             target: Target::DYNAMIC,
             bindings: Bindings::Address,
@@ -167,11 +200,22 @@ impl RendererDesc {
 
     /// The attachments that the pipeline of expected depths draws into.
     pub(super) fn expected_depth_attachments(&self) -> Option<Attachments> {
-        self.expected_depth.map(|expected| Attachments {
-            color: expected.format,
-            target: expected.target,
+        self.expected_depth
+            .map(|expected| self.in_place_of_colours(expected.format, expected.target))
+    }
+
+    /// The attachments that the pipeline of motion draws into.
+    pub(super) fn motion_attachments(&self) -> Option<Attachments> {
+        self.motion
+            .map(|motion| self.in_place_of_colours(motion.format, motion.target))
+    }
+
+    fn in_place_of_colours(&self, color: vk::Format, target: Target) -> Attachments {
+        Attachments {
+            color,
+            target,
             ..self.attachments()
-        })
+        }
     }
 
     /// Checks that there can be such attachments, and that a device can draw into them; the error says what it cannot.
@@ -198,13 +242,28 @@ impl RendererDesc {
             );
         }
         if let Some(expected) = self.expected_depth {
-            if !SUMS.contains(&expected.format) {
+            let what = "ExpectedDepthDesc::format";
+            self.check_floats(device, expected.format, what)?;
+        }
+        if let Some(MotionDesc {
+            format,
+            least_alpha,
+            ..
+        }) = self.motion
+        {
+            self.check_floats(device, format, "MotionDesc::format")?;
+            if !(0.0..=1.0).contains(&least_alpha) {
                 return Err(Error::Invalid(format!(
-                    "ExpectedDepthDesc::format is {:?}: sums of depths and alphas need two floats, as of R32G32_SFLOAT",
-                    expected.format
+                    "MotionDesc::least_alpha is {least_alpha}; it must be from 0 to 1"
                 )));
             }
-            self.check_color(device, expected.format)?;
+            if self.hides_from_tiles() {
+                return Err(Error::Invalid(
+                    "RendererDesc::motion is set and DepthDesc::readable is not: tiles find the motion, and need the \
+                     host's depth before its scope"
+                        .into(),
+                ));
+            }
         }
         self.depth
             .map_or(Ok(()), |depth| self.check_depth(device, depth))
@@ -264,6 +323,16 @@ impl RendererDesc {
         Ok(())
     }
 
+    /// Checks the format of a target that holds no colours.
+    fn check_floats(&self, device: &Device, format: vk::Format, what: &str) -> Result<()> {
+        match FLOATS.contains(&format) {
+            true => self.check_color(device, format),
+            false => Err(Error::Invalid(format!(
+                "{what} is {format:?}: two floats or more are needed, as of R32G32_SFLOAT"
+            ))),
+        }
+    }
+
     fn check_color(&self, device: &Device, color: vk::Format) -> Result<()> {
         let name = &device.info().name;
         let refuse = |what: String| Err(Error::Device(format!("{name} cannot {what}")));
@@ -306,8 +375,8 @@ const SRGB: [vk::Format; 5] = [
     vk::Format::A8B8G8R8_SRGB_PACK32,
 ];
 
-/// Formats that hold sums of depths and of alphas.
-const SUMS: [vk::Format; 6] = [
+/// Formats of two floats or more.
+const FLOATS: [vk::Format; 6] = [
     vk::Format::R16G16_SFLOAT,
     vk::Format::R16G16B16_SFLOAT,
     vk::Format::R16G16B16A16_SFLOAT,

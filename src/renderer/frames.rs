@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::outcome::Submission;
-use crate::passes::{Buffers, CutPlan, EyePlan, Targets, Work};
+use crate::passes::{Buffers, CutPlan, EyePlan, Sight, Targets, Work};
 use crate::types::FrameCounts;
 use rara_base::error::Result;
 use rara_gpu::{Buffer, BufferDesc, Device, Location, Timer};
@@ -22,6 +22,8 @@ pub(super) struct Decision {
     pub(super) depth_map: Option<DepthMap>,
     /// World units in one of the scene's.
     pub(super) unit: f64,
+    /// Where the layers have the camera, where motion is drawn.
+    pub(super) sight: Option<Sight>,
     /// True when nothing is drawn of it without room for its pairs of tile and splat.
     pub(super) redrawn: bool,
     /// True when only tiles show what is asked for, so that no quads can take their place.

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use ash::vk;
 
-use crate::passes::{EyePlan, PreviousFrame};
+use crate::passes::{EyePlan, PreviousFrame, Sight};
 use crate::stats::RasterChoice;
 use rara_base::error::{Error, Result};
 use rara_gpu::Device;
@@ -36,7 +36,7 @@ mod tests;
 mod working;
 
 pub use cut::Cut;
-pub use desc::{ColorSpace, DepthDesc, ExpectedDepthDesc, RendererDesc};
+pub use desc::{ColorSpace, DepthDesc, ExpectedDepthDesc, MotionDesc, RendererDesc};
 pub use frame::{ConfiguredFrame, PreparedFrame};
 pub(crate) use frames::RecordedFrame;
 pub use limits::FrameLimits;
@@ -123,6 +123,8 @@ pub struct Renderer {
     id: u64,
     /// Shared with the frames that are configured and not prepared, as long as nothing is forgotten.
     pending: Arc<()>,
+    /// Where the layers of the last prepared frame have the camera, where motion is drawn.
+    seen: Option<Sight>,
     /// How splats become pixels, as the log was told last.
     noted: RasterChoice,
 }
@@ -153,6 +155,7 @@ impl Renderer {
     pub(crate) fn with_expected_depth(&self, format: vk::Format) -> Result<Self> {
         self.alike(RendererDesc {
             expected_depth: Some(ExpectedDepthDesc::new(format)),
+            motion: None,
             timing: false,
             statistics: false,
             reuse: false,
@@ -204,6 +207,7 @@ impl Renderer {
             previous: None,
             id: NEXT_ID.fetch_add(1, Ordering::Relaxed),
             pending: Arc::default(),
+            seen: None,
             noted: RasterChoice::default(),
         })
     }
@@ -247,6 +251,7 @@ impl Renderer {
     pub fn forget(&mut self) {
         self.previous = None;
         self.cut.found = None;
+        self.seen = None;
         self.pending = Arc::default(); // frames that are configured may count on it
     }
 

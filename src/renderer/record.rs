@@ -3,14 +3,19 @@
 use std::sync::Arc;
 
 use ash::vk;
+use smallvec::SmallVec;
 
 use super::frame::{FrameCut, FrameState};
-use super::{ConfiguredFrame, PreparedFrame, Renderer, out_of_order};
+use super::{ConfiguredFrame, MotionDesc, PreparedFrame, Renderer, out_of_order};
 use crate::passes::{
-    self, CutResources, EyeResources, Part, PreviousFrame, SceneBuffers, Work, composite, tiles,
+    self, CutResources, EyeResources, Part, PreviousFrame, SceneBuffers, Work, composite, motion,
+    tiles,
 };
 use rara_base::error::Result;
 use rara_gpu::{DepthImage, Drawer, Recorder};
+
+/// Layers whose motion is recorded without memory of its own.
+const FEW_LAYERS: usize = 64;
 
 impl Renderer {
     /// Records a frame's stages up to the draw, outside any rendering scope. `depth` is what the host has drawn already, for a
@@ -93,9 +98,14 @@ impl Renderer {
                 buffers: &state.buffers,
                 copied: copied.unwrap_or_default(),
             };
-            passes::record(plan, &mut recorder, resources, owns_cut, &slot.counts);
+            let seen = state.decision.sight.as_ref();
+            let motions = seen.map(|now| now.motions(self.seen.as_ref()).collect());
+            let motions: SmallVec<[_; FEW_LAYERS]> = motions.unwrap_or_default();
+            let written = (&slot.counts, &motions[..]);
+            passes::record(plan, &mut recorder, resources, owns_cut, written);
             self.keep(scene, &state);
         }
+        self.seen.clone_from(&state.decision.sight);
         Ok(PreparedFrame {
             number: self.frames.prepared(),
             state,
@@ -217,6 +227,60 @@ impl Renderer {
                 let depths = (composite::draw(plan, decision.targets, part), buffers);
                 composite::record(drawer, pipelines, depths, origin, map);
             }
+        });
+        Ok(())
+    }
+
+    /// Records the splats' motion inside a rendering scope of its own, with the attachment of
+    /// [`RendererDesc::motion`](crate::RendererDesc::motion) and, if there is one, the same depth attachment. Red and green are
+    /// where what a pixel shows was in the frame that this renderer has prepared before, less where it is, px to the right and
+    /// down in the camera's picture; blue is the number of its layer, and alpha is 1. A pixel shows the splat that adds most to its alpha,
+    /// where that is on the pixel's line of sight, as [`draw_depth`](Self::draw_depth) says. The camera, the renderer's placement
+    /// and those of the layers move it. A clip that moves over Gaussians that stand still moves nothing: they are where they
+    /// were. A shift of the principal point, as for temporal antialiasing, counts as motion: a host that wants it without adds
+    /// the difference of the two shifts.
+    ///
+    /// Motion is 0 where there is no frame before, since [`forget`](Self::forget) too, where that showed a scene of another
+    /// number of layers or in another projection, and where something was behind the eye. Pixels whose alpha is below
+    /// [`MotionDesc::least_alpha`](crate::MotionDesc::least_alpha), and all of them where tiles have no room
+    /// ([`fell_back`](Self::fell_back)), keep what the host has drawn. `origin` is as in [`draw`](Self::draw).
+    ///
+    /// # Safety
+    /// As for [`draw`](Self::draw), in such a scope.
+    ///
+    /// # Errors
+    /// As for [`draw`](Self::draw), and without [`RendererDesc::motion`](crate::RendererDesc::motion).
+    pub unsafe fn draw_motion(
+        &mut self,
+        cmd: vk::CommandBuffer,
+        origin: [f32; 2],
+        frame: &PreparedFrame,
+    ) -> Result<()> {
+        let state = self.checked("draw_motion", origin, frame)?;
+        let Some(MotionDesc { least_alpha, .. }) = self.desc.motion else {
+            return out_of_order("draw_motion needs RendererDesc::motion");
+        };
+        let (decision, buffers) = (&state.decision, &*state.buffers);
+        let plan = &decision.plan;
+        let attachments = decision.targets.motion;
+        let drawn = |_: &_| plan.gaussians() > 0 && plan.way.draws_motion;
+        let Some(attachments) = attachments.filter(drawn) else {
+            return Ok(());
+        };
+        let newest = self.frames.newest_mut();
+        let timer = newest.and_then(|frame| frame.timer.as_mut());
+        // SAFETY: the caller promises that `cmd` is recording inside a fitting rendering scope.
+        let mut drawer = unsafe { Drawer::new(&self.device, cmd, timer) };
+        drawer.pass("splat_motion", |drawer| {
+            drawer.picture(origin, plan.size());
+            let frame = (plan, buffers);
+            motion::record(
+                drawer,
+                &state.pipelines,
+                frame,
+                attachments,
+                (origin, least_alpha),
+            );
         });
         Ok(())
     }

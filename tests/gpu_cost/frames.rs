@@ -5,7 +5,8 @@ use rara::glam::{DQuat, DVec3};
 use rara::scene::{Bounds, Kind, generate};
 use rara::{
     Camera, Clip, ClipOp, DepthDesc, DepthMap, Error, ExpectedDepthDesc, Gaussians, Layer, Mode,
-    Preset, Raster, Renderer, RendererDesc, Scene, SceneBuffers, Settings, ShFormat, Shape,
+    MotionDesc, Preset, Raster, Renderer, RendererDesc, Scene, SceneBuffers, Settings, ShFormat,
+    Shape,
 };
 use rara_gpu::{Bindings, Device, DeviceDesc, DeviceShape, Drawer, Image, RecordedCommands};
 
@@ -39,6 +40,8 @@ enum Host {
     HasDepth,
     /// It asks for the splats' depths.
     WantsDepth,
+    /// It asks for their motion, which follows from their depths.
+    WantsMotion,
 }
 
 /// A kind of frame.
@@ -69,9 +72,9 @@ impl Frame {
         stored && self.host == Host::Plain
     }
 
-    /// True when the host asks for the splats' depths.
+    /// True when the splats' depths are found for the host.
     pub fn wants_depth(&self) -> bool {
-        self.host == Host::WantsDepth
+        matches!(self.host, Host::WantsDepth | Host::WantsMotion)
     }
 
     /// True of frames in whose commands the others do not differ: more planes in a mode that is not exact, another format or
@@ -205,6 +208,7 @@ impl Frames {
                 let expected = ExpectedDepthDesc::new(vk::Format::R32G32_SFLOAT);
                 desc = desc.expected_depth(Some(expected));
             }
+            Host::WantsMotion => desc = desc.motion(Some(MotionDesc::new(FORMAT))),
         }
         let mut renderer = self.renderer.sharing(desc).expect("a renderer");
         let scene = match frame.layered {
@@ -302,6 +306,13 @@ fn frames(raster: Raster) -> Vec<Frame> {
             host: Host::WantsDepth,
             ..more("with expected depths")
         });
+        // Only tiles find it.
+        if raster == Raster::Tiles {
+            all.push(Frame {
+                host: Host::WantsMotion,
+                ..more("with motion")
+            });
+        }
         all.push(Frame {
             preset: Preset::Fast,
             ..more("fast")

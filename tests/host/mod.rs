@@ -8,6 +8,7 @@ mod embed;
 mod features;
 mod formats;
 mod gpu;
+mod motion;
 mod streaming;
 mod views;
 mod wgpu_host;

@@ -34,6 +34,7 @@ fn plan(mode: Mode, planes: usize) -> EyePlan {
         occluders: None,
         expects_depth: false,
         write_alpha: None,
+        draws_motion: false,
         whole: None,
         colours: SplatColours::Scene,
     };

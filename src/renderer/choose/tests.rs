@@ -15,7 +15,7 @@ fn linear_light_without_tiles_is_refused() {
         tiles: 1000,
         hidden: false,
         multisampled: false,
-        written: false,
+        beside: false,
         converted: true,
     };
     let hidden = Targets {
@@ -37,7 +37,7 @@ fn tiles_are_chosen_where_they_can_draw() {
         tiles: 1000,
         hidden: false,
         multisampled: false,
-        written: false,
+        beside: false,
         converted: false,
     };
     let hidden = Targets {

@@ -32,7 +32,7 @@ use rara_c::gaussians::*;
 use rara_c::load::*;
 use rara_c::scene::*;
 use rara_c::upload::*;
-use world::World;
+use world::{Drawn, World};
 
 type Pixels = Vec<[f32; 4]>;
 
@@ -95,25 +95,29 @@ fn pipelines_are_those_that_the_host_asks_for() {
 }
 
 #[test]
-fn what_is_behind_a_mesh_and_expected_depths_are_the_same_bytes() {
+fn what_is_behind_a_mesh_expected_depths_and_motion_are_the_same_bytes() {
     with_both(3_000, |scene, lent, device, ours| {
         let turn = DQuat::from_xyzw(0.1, -0.2, 0.05, 0.9);
         let placed = Placement::new(DVec3::new(0.3, -0.1, 0.2), turn, 0.8).expect("possible");
         let mut seen: Vec<Pixels> = Vec::new();
         let uploaded = ours.uploaded();
         for raster in [Raster::Tiles, Raster::Quad] {
-            for (made, placement, depths) in [
-                (World::new(scene, raster), Placement::IDENTITY, false),
-                (World::new(scene, raster), placed, false),
-                (World::new(scene, raster), placed, true),
-                (World::flat(scene, raster), placed, false),
+            for (made, placement, drawn) in [
+                (
+                    World::new(scene, raster),
+                    Placement::IDENTITY,
+                    Drawn::Colours,
+                ),
+                (World::new(scene, raster), placed, Drawn::Colours),
+                (World::new(scene, raster), placed, Drawn::Depths),
+                (World::flat(scene, raster), placed, Drawn::Colours),
             ] {
                 let world = World {
                     placement,
-                    depths,
+                    drawn,
                     ..made
                 };
-                let what = format!("{raster:?}, {placement:?}, depths: {depths}");
+                let what = format!("{raster:?}, {placement:?}, {drawn:?}");
                 let canvas = world.canvas(lent, device);
                 let truth = world.drawn(device, &canvas);
                 // SAFETY: the handles are alive.
@@ -129,6 +133,18 @@ fn what_is_behind_a_mesh_and_expected_depths_are_the_same_bytes() {
             seen[1] != seen[3] && seen[5] != seen[7],
             "without perspective"
         );
+        let world = World {
+            drawn: Drawn::Motion,
+            ..World::new(scene, Raster::Tiles)
+        };
+        let canvas = world.canvas(lent, device);
+        let truth = world.drawn(device, &canvas);
+        // SAFETY: the handles are alive.
+        let drawn = unsafe { world.drawn_in_c(ours.device, &canvas, |_| uploaded) };
+        assert!(drawn == truth, "motion");
+        let filled = drawn.iter().filter(|p| p[..2] == [0.0; 2] && p[3] == 1.0);
+        let filled = filled.count();
+        assert!(filled > 500, "{filled} pixels, and nothing has moved yet");
         // SAFETY: all frames were waited for.
         unsafe { rara_scene_buffers_destroy(uploaded) };
     });

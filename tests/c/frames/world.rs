@@ -11,8 +11,8 @@ use rara::glam::DMat4;
 use rara::gpu::{Bindings, DepthImage};
 use rara::scene::Bounds;
 use rara::{
-    Camera, Clip, ClipOp, DepthDesc, DepthMap, ExpectedDepthDesc, Ndc, Plane, Projection, Renderer,
-    RendererDesc, Settings,
+    Camera, Clip, ClipOp, DepthDesc, DepthMap, ExpectedDepthDesc, MotionDesc, Ndc, Plane,
+    Projection, Renderer, RendererDesc, Settings,
 };
 use rara_c::boundary::*;
 use rara_c::camera::*;
@@ -35,6 +35,23 @@ const NEAR: f64 = 0.05;
 /// The depths that become 0 and 1 without perspective.
 const FLAT: [f64; 2] = [40.0, 0.0];
 
+/// What a frame draws.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Drawn {
+    Colours,
+    Depths,
+    Motion,
+}
+
+impl Drawn {
+    fn format(self) -> vk::Format {
+        match self {
+            Self::Depths => DEPTHS,
+            Self::Colours | Self::Motion => FLOATS,
+        }
+    }
+}
+
 /// A frame that both interfaces draw.
 pub(super) struct World<'a> {
     /// The Gaussians that the camera looks at.
@@ -45,8 +62,7 @@ pub(super) struct World<'a> {
     pub(super) plane: Plane,
     pub(super) raster: Raster,
     pub(super) placement: Placement,
-    /// Expected depths are drawn, not colours.
-    pub(super) depths: bool,
+    pub(super) drawn: Drawn,
     /// The expression that clips in place of the plane.
     pub(super) region: Option<&'static CStr>,
     /// A host's view and projection, which say what the camera is and what depths are; y is up.
@@ -64,7 +80,7 @@ impl<'a> World<'a> {
             plane: Plane::new(normal, 0.1 - normal.dot(bounds.centre())).expect("a normal"),
             raster,
             placement: Placement::IDENTITY,
-            depths: false,
+            drawn: Drawn::Colours,
             region: None,
             matrices: None,
         }
@@ -118,7 +134,7 @@ impl<'a> World<'a> {
 
     /// A canvas with a mesh amid the splats, in the middle of the picture.
     pub(super) fn canvas(&self, lent: &AdoptDesc, device: &Device) -> Canvas {
-        let mut desc = CanvasDesc::new(VIEW, if self.depths { DEPTHS } else { FLOATS });
+        let mut desc = CanvasDesc::new(VIEW, self.drawn.format());
         (desc.depth, desc.far) = (DEPTH, 0.0);
         let centre = self.placement.to_world(Bounds::of(self.scene).centre());
         let z = (self.camera.rotation * (centre - self.camera.eye)).z;
@@ -138,6 +154,7 @@ impl<'a> World<'a> {
         let desc = RendererDesc::new(FLOATS)
             .depth(Some(DepthDesc::new(DEPTH, self.map()).readable(true)))
             .expected_depth(Some(ExpectedDepthDesc::new(DEPTHS)))
+            .motion((self.drawn == Drawn::Motion).then(|| MotionDesc::new(FLOATS)))
             .bindings(Bindings::Mixed);
         let scene = SceneBuffers::upload(device, self.layers.clone(), ShFormat::Packed);
         let scene = scene.expect("uploads");
@@ -147,7 +164,11 @@ impl<'a> World<'a> {
         let configured = renderer.configure(&scene, &self.camera, &self.clip(), &settings);
         let frame = Frame {
             behind: Some(canvas.depth_image(0, 0)),
-            depths: self.depths,
+            call: match self.drawn {
+                Drawn::Colours => Renderer::draw,
+                Drawn::Depths => Renderer::draw_depth,
+                Drawn::Motion => Renderer::draw_motion,
+            },
             ..Frame::new(VIEW)
         };
         canvas.draw_frame(&mut renderer, &scene, configured, &frame)
@@ -179,6 +200,9 @@ impl<'a> World<'a> {
             let size = size_of_val(&desc);
             assert_ok(rara_renderer_desc_default(&mut desc, size, FLOATS));
             (desc.depth, desc.expected_depth_format) = (&depth, DEPTHS);
+            if self.drawn == Drawn::Motion {
+                desc.motion_format = FLOATS;
+            }
             desc.bindings = RARA_BINDINGS_MIXED;
             let mut renderer = null_mut();
             assert_ok(rara_renderer_create(device, &desc, &mut renderer));
@@ -235,9 +259,10 @@ impl<'a> World<'a> {
             };
             let inside = |cmd| {
                 canvas.viewport(cmd, 0, 0, VIEW);
-                let draw = match self.depths {
-                    true => rara_renderer_draw_depth,
-                    false => rara_renderer_draw,
+                let draw = match self.drawn {
+                    Drawn::Colours => rara_renderer_draw,
+                    Drawn::Depths => rara_renderer_draw_depth,
+                    Drawn::Motion => rara_renderer_draw_motion,
                 };
                 assert_ok(draw(renderer, cmd, 0.0, 0.0, made.get()));
             };

@@ -2,10 +2,15 @@
 
 use std::cell::{OnceCell, RefCell};
 
+use rara::ash::vk;
 use rara::gpu::DepthImage;
-use rara::{ConfiguredFrame, Renderer, SceneBuffers};
+use rara::{ConfiguredFrame, PreparedFrame, Renderer, SceneBuffers};
 
 use super::Canvas;
+
+/// One of a renderer's draws.
+pub type Call =
+    unsafe fn(&mut Renderer, vk::CommandBuffer, [f32; 2], &PreparedFrame) -> rara::Result<()>;
 
 /// A camera's picture on a canvas.
 pub struct Frame {
@@ -15,8 +20,8 @@ pub struct Frame {
     pub origin: (i32, i32),
     /// The depth that the renderer reads, if it reads one.
     pub behind: Option<DepthImage>,
-    /// Draw expected depths, not colours.
-    pub depths: bool,
+    /// What is drawn: colours by [`Renderer::draw`], or something else.
+    pub call: Call,
 }
 
 impl Frame {
@@ -26,7 +31,7 @@ impl Frame {
             size,
             origin: (0, 0),
             behind: None,
-            depths: false,
+            call: Renderer::draw,
         }
     }
 }
@@ -57,12 +62,7 @@ impl Canvas {
             let origin = [x as f32, y as f32];
             let prepared = prepared.get().expect("it was prepared");
             // SAFETY: `cmd` is inside the canvas's scope, which the renderer was made for.
-            let drawn = unsafe {
-                match frame.depths {
-                    true => renderer.draw_depth(cmd, origin, prepared),
-                    false => renderer.draw(cmd, origin, prepared),
-                }
-            };
+            let drawn = unsafe { (frame.call)(&mut renderer, cmd, origin, prepared) };
             drawn.expect("draws");
         };
         let [pixels, _] = self.draw(before, inside);

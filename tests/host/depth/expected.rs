@@ -37,7 +37,7 @@ fn draw_placed(
     renderer.set_placement(placement);
     let configured = renderer.configure(&scene, camera, clip, settings);
     let frame = Frame {
-        depths: true,
+        call: Renderer::draw_depth,
         ..frame
     };
     canvas.draw_frame(&mut renderer, &scene, configured, &frame)
@@ -198,7 +198,7 @@ fn depths_of_tiles_without_room_are_those_of_quads() {
             renderer.reserve(&limits).expect("there is memory");
             let configured = renderer.configure(&there, &world.camera, &world.clip, &settings);
             let frame = Frame {
-                depths: true,
+                call: Renderer::draw_depth,
                 ..Frame::new(VIEW)
             };
             let pixels = canvas.draw_frame(&mut renderer, &there, configured, &frame);

@@ -1,0 +1,269 @@
+//! Temporal hosts get how far each pixel's splats have moved since the frame before, and the number of their layer.
+
+use crate::canvas::{Canvas, CanvasDesc, Frame, with_host};
+use crate::common;
+use rara::ash::vk;
+use rara::glam::{DMat3, DQuat, DVec3};
+use rara::gpu::{Bindings, Device};
+use rara::scene::{Kind, generate};
+use rara::{
+    Camera, Clip, ClipOp, DepthDesc, DepthMap, Gaussians, Layer, LayerState, Mode, MotionDesc,
+    Placement, Projection, Raster, Renderer, RendererDesc, Scene, SceneBuffers, Settings, ShFormat,
+};
+use rara_reference::depth::{Strongest, strongest};
+
+const SIZE: (u32, u32) = (189, 131);
+const FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
+/// What a host has in its target before.
+const BEFORE: [f32; 4] = [7.0, 8.0, 9.0, 0.5];
+const LEAST: f32 = 0.25;
+
+/// What a frame shows: where the camera and the layers are.
+#[derive(Clone, Copy)]
+struct Moment {
+    camera: Camera,
+    placements: [Placement; 2],
+}
+
+struct World {
+    halves: [Gaussians; 2],
+    clip: Clip,
+    settings: Settings,
+}
+
+impl World {
+    fn new(mode: Mode) -> Self {
+        let whole = generate(Kind::General, 3_000, 5);
+        let clip = common::clip(&whole, 1, ClipOp::And);
+        let half = |odd| common::picked(&whole, (0..whole.len()).filter(|i| i % 2 == odd));
+        Self {
+            halves: [half(0), half(1)],
+            clip,
+            settings: Settings::default().mode(mode),
+        }
+    }
+
+    /// Two moments of a camera and layers that move.
+    fn moments(&self, projection: Projection) -> [Moment; 2] {
+        let seen = common::views(&self.halves[0], 3, SIZE)[1];
+        let seen = match projection {
+            Projection::Perspective => seen,
+            Projection::Orthographic => common::flattened(&seen, &self.halves[0]),
+        };
+        let turned = seen.rotation * DMat3::from_axis_angle(DVec3::Y, 0.02);
+        let now = seen
+            .eye(seen.eye + DVec3::new(0.05, -0.02, 0.03))
+            .rotation(turned)
+            .cx(seen.cx + 0.25)
+            .fx(seen.fx * 1.01);
+        let turn = DQuat::from_axis_angle(DVec3::new(0.6, 0.0, 0.8), 0.03);
+        let at = |turn, scale| Placement::new(DVec3::new(0.1, 0.05, 0.0), turn, scale);
+        let [had, has] = [(DQuat::IDENTITY, 1.1), (turn, 1.15)]
+            .map(|(turn, scale)| at(turn, scale).expect("a scale"));
+        [
+            Moment {
+                camera: seen,
+                placements: [Placement::IDENTITY, had],
+            },
+            Moment {
+                camera: now,
+                placements: [Placement::IDENTITY, has],
+            },
+        ]
+    }
+
+    fn scene(&self, moment: &Moment) -> Scene<'_> {
+        let layers = self.halves.iter().zip(moment.placements).enumerate();
+        let layers = layers.map(|(number, (half, placement))| {
+            Layer::new(number.to_string(), half).with(LayerState::default().placement(placement))
+        });
+        layers.collect()
+    }
+
+    /// What is to be found: where it was before, less where it is, for each pixel.
+    fn truth(&self, [before, now]: &[Moment; 2]) -> Vec<([f64; 2], Strongest)> {
+        let (camera, scene) = (&now.camera, self.scene(now));
+        let seen = strongest::<f64>(scene, camera, &self.clip, &self.settings);
+        let ways = seen.into_iter().enumerate().map(|(at, seen)| {
+            let at = at as u32;
+            let pixel = [at % SIZE.0, at / SIZE.0].map(|side| f64::from(side) + 0.5);
+            let world = point(camera, pixel, seen.depth);
+            let own = now.placements[seen.layer].to_scene(world);
+            let was = before.placements[seen.layer].to_world(own);
+            let [x, y] = seen_at(&before.camera, was);
+            ([x - pixel[0], y - pixel[1]], seen)
+        });
+        ways.collect()
+    }
+}
+
+/// The point that a camera sees in a pixel at a depth.
+fn point(camera: &Camera, [x, y]: [f64; 2], depth: f64) -> DVec3 {
+    let away = match camera.projection {
+        Projection::Perspective => depth,
+        Projection::Orthographic => 1.0,
+    };
+    let [x, y] = [(x - camera.cx) / camera.fx, (y - camera.cy) / camera.fy];
+    camera.eye + camera.rotation.transpose() * DVec3::new(x * away, y * away, depth)
+}
+
+/// The pixel in which a camera sees a point.
+fn seen_at(camera: &Camera, point: DVec3) -> [f64; 2] {
+    let own = camera.rotation * (point - camera.eye);
+    let away = match camera.projection {
+        Projection::Perspective => own.z,
+        Projection::Orthographic => 1.0,
+    };
+    [
+        camera.fx * own.x / away + camera.cx,
+        camera.fy * own.y / away + camera.cy,
+    ]
+}
+
+fn desc(bindings: Bindings) -> RendererDesc {
+    let motion = MotionDesc::new(FORMAT).least_alpha(LEAST);
+    RendererDesc::new(FORMAT)
+        .bindings(bindings)
+        .motion(Some(motion))
+}
+
+/// Draws the motion of moments that follow each other; returns that of each.
+fn draw(
+    device: &Device,
+    canvas: &Canvas,
+    world: &World,
+    renderer: &mut Renderer,
+    moments: &[Moment],
+) -> Vec<Vec<[f32; 4]>> {
+    let scene = SceneBuffers::upload(device, world.scene(&moments[0]), ShFormat::Float);
+    let mut scene = scene.expect("uploads");
+    let frame = Frame {
+        call: Renderer::draw_motion,
+        ..Frame::new(SIZE)
+    };
+    let drawn = moments.iter().map(|moment| {
+        for (number, placement) in moment.placements.into_iter().enumerate() {
+            let state = LayerState::default().placement(placement);
+            scene.set_layer_state(number, state).expect("a layer");
+        }
+        let configured = renderer.configure(&scene, &moment.camera, &world.clip, &world.settings);
+        canvas.draw_frame(renderer, &scene, configured, &frame)
+    });
+    drawn.collect()
+}
+
+#[test]
+fn cameras_and_layers_move_pixels_as_the_reference_says() {
+    with_host(true, |host, device| {
+        let mut clear = CanvasDesc::new(SIZE, FORMAT);
+        clear.clear = BEFORE;
+        let canvas = Canvas::new(&host.lend(), device, clear);
+        let first = Renderer::new(device, desc(Bindings::Mixed)).expect("a renderer");
+        for (mode, projection, bindings) in [
+            (Mode::Exact, Projection::Perspective, Bindings::Mixed),
+            (Mode::None, Projection::Orthographic, Bindings::Address),
+            (Mode::Rara, Projection::Perspective, Bindings::Bound),
+        ] {
+            let world = World::new(mode);
+            let moments = world.moments(projection);
+            let mut renderer = first.sharing(desc(bindings)).expect("a renderer");
+            let [before, now] = moments;
+            let drawn = draw(device, &canvas, &world, &mut renderer, &[before, now, now]);
+            for still in [&drawn[0], &drawn[2]] {
+                let moved = still.iter().filter(|p| **p != BEFORE && p[..2] != [0.0; 2]);
+                assert_eq!(moved.count(), 0, "nothing has moved");
+            }
+            let (mut errors, mut ways, mut layers) = (Vec::new(), 0.0_f64, [0; 2]);
+            for (ours, (way, seen)) in drawn[1].iter().zip(world.truth(&moments)) {
+                let is_near = (seen.coverage - f64::from(LEAST)).abs() < 1e-4;
+                if is_near {
+                    continue;
+                }
+                if seen.coverage < f64::from(LEAST) {
+                    assert_eq!(*ours, BEFORE, "what is thin keeps what the host has drawn");
+                    continue;
+                }
+                let [x, y, layer, alpha] = ours.map(f64::from);
+                assert_eq!(alpha, 1.0);
+                let is_other = layer != seen.layer as f64;
+                let error = (x - way[0]).hypot(y - way[1]);
+                errors.push(if is_other { f64::INFINITY } else { error });
+                ways = ways.max(way[0].hypot(way[1]));
+                layers[seen.layer] += 1;
+            }
+            errors.sort_by(f64::total_cmp);
+            let most = errors[errors.len() * 99 / 100];
+            let what = format!(
+                "{mode:?}, {projection:?}: {most:.1e} px for 99 % of {} pixels, which move up to {ways:.1} px; {layers:?}",
+                errors.len()
+            );
+            eprintln!("{what}");
+            assert!(most < 2e-3 && errors.len() > 2_000, "{what}");
+            assert!(
+                ways > 2.0 && layers.iter().all(|&count| count > 500),
+                "{what}"
+            );
+        }
+    });
+}
+
+/// A frame that takes over what the one before has computed, all of it or the view, has the same motion as one that does not.
+#[test]
+fn reused_frames_have_the_same_motion_and_colours_are_as_without() {
+    with_host(true, |host, device| {
+        let canvas = Canvas::new(&host.lend(), device, CanvasDesc::new(SIZE, FORMAT));
+        let first = Renderer::new(device, desc(Bindings::Mixed)).expect("a renderer");
+        let mut world = World::new(Mode::Exact);
+        let [before, now] = world.moments(Projection::Perspective);
+        let moments = [before, now, now];
+        let scene = SceneBuffers::upload(device, world.scene(&now), ShFormat::Float);
+        let scene = scene.expect("uploads");
+        let [fresh, reused] = [false, true].map(|reuse| {
+            let desc = desc(Bindings::Mixed).reuse(reuse);
+            let mut renderer = first.sharing(desc).expect("a renderer");
+            let drawn = draw(device, &canvas, &world, &mut renderer, &moments);
+            let (camera, clip) = (&now.camera, common::moved(world.clip.clone(), 0.02));
+            let frame = Frame {
+                call: Renderer::draw_motion,
+                ..Frame::new(SIZE)
+            };
+            let mut of = |clip: &Clip| {
+                let configured = renderer.configure(&scene, camera, clip, &world.settings);
+                canvas.draw_frame(&mut renderer, &scene, configured, &frame)
+            };
+            (drawn, [of(&world.clip), of(&clip), of(&clip)])
+        });
+        assert!(fresh == reused);
+        assert!(fresh.1[0] != fresh.1[1], "the clip has moved");
+        let [with, without] = [true, false].map(|draws| {
+            let own = desc(Bindings::Mixed);
+            let desc = own.motion(own.motion.filter(|_| draws));
+            let mut renderer = first.sharing(desc).expect("a renderer");
+            let configured = renderer.configure(&scene, &now.camera, &world.clip, &world.settings);
+            canvas.draw_frame(&mut renderer, &scene, configured, &Frame::new(SIZE))
+        });
+        assert!(with == without);
+        world.settings = world.settings.raster(Raster::Quad);
+        let mut renderer = first.sharing(desc(Bindings::Mixed)).expect("a renderer");
+        let refused = renderer.configure(&scene, &now.camera, &world.clip, &world.settings);
+        let refused = refused.expect_err("quads find no motion").to_string();
+        assert!(refused.contains("RendererDesc::motion"), "{refused}");
+        let map = DepthMap::reversed(0.5, 50.0).expect("0 < near < far");
+        let unread = DepthDesc::new(vk::Format::D32_SFLOAT, map);
+        let own = MotionDesc::new(FORMAT);
+        for (desc, says) in [
+            (desc(Bindings::Mixed).depth(Some(unread)), "readable"),
+            (
+                RendererDesc::new(FORMAT).motion(Some(own.least_alpha(1.5))),
+                "from 0 to 1",
+            ),
+            (
+                RendererDesc::new(FORMAT).motion(Some(MotionDesc::new(vk::Format::R32_SFLOAT))),
+                "two floats",
+            ),
+        ] {
+            let refused = Renderer::new(device, desc).expect_err(says).to_string();
+            assert!(refused.contains(says), "{refused}");
+        }
+    });
+}

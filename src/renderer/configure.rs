@@ -8,7 +8,7 @@ use super::choose;
 use super::desc::ColorSpace;
 use super::frame::{FrameCut, FrameState};
 use super::frames::{Decision, RecordedFrame};
-use super::outcome::Submission;
+use super::outcome::{Outcome, Submission};
 use super::pair_room::Retry;
 use super::request::{FrameRequest, Kept};
 use super::{ConfiguredFrame, Renderer, out_of_order};
@@ -35,7 +35,8 @@ impl Renderer {
     ///
     /// # Errors
     /// [`Error::Invalid`] for what no frame can show, [`Error::Memory`] and [`Error::Budget`] where there is no room for it,
-    /// and [`Error::Device`] where the driver fails. [`Error::Invalid`] also for a cut that is not configured or is another
+    /// and [`Error::Device`] where the driver fails. [`Error::Memory`] also where only tiles show what is asked for, a frame before
+    /// [has shown nothing](Self::fell_back) for want of room, and no more can be made. [`Error::Invalid`] also for a cut that is not configured or is another
     /// scene's, and for a cut with a camera that has near or far planes, which would cut as well.
     pub fn configure<'a>(
         &mut self,
@@ -132,7 +133,8 @@ impl Renderer {
         // Where no quads can take the tiles' place, nothing does.
         let targets = self.targets(request.draws_linear());
         let needs_tiles = needs_tiles(request.settings, &targets);
-        let redrawn = self.make_room(request, tiles) || needs_tiles;
+        let (redrawn, lacks_room) = self.make_room(request, tiles);
+        let redrawn = redrawn || needs_tiles;
         let (raster, reason) = self.choose_raster(request.settings, tiles, &targets)?;
         // Quads, which have to be drawn, take the tiles' place only in a frame that is not redrawn.
         let leaves_picture = raster == Raster::Tiles && redrawn && scene.count > 0;
@@ -177,6 +179,7 @@ impl Renderer {
             sight: self.desc.motion.map(|_| Sight::new(facts.layers, camera)),
             redrawn,
             needs_tiles,
+            lacks_room,
             is_first_use: false,
         })
     }
@@ -190,6 +193,9 @@ impl Renderer {
                 settings: &settings,
                 ..*request
             })?;
+            if decision.needs_tiles && decision.lacks_room {
+                return Err(Outcome::no_room(request.settings));
+            }
             if settings.raster != request.settings.raster {
                 decision.reason = "the device has no memory for the tiles' lists";
             }
@@ -322,8 +328,9 @@ impl Renderer {
     }
 
     /// Makes room for as many pairs of tile and splat as the frame before has shown to be needed, and as this one is expected
-    /// to have. Returns whether nothing is to be drawn of the next frame where that is not enough.
-    fn make_room(&mut self, request: &FrameRequest<'_>, tiles: u32) -> bool {
+    /// to have. Returns whether nothing is to be drawn of the next frame where that is not enough, and whether, after a frame in flight
+    /// for which it was not, it will not be, and no more can be made.
+    fn make_room(&mut self, request: &FrameRequest<'_>, tiles: u32) -> (bool, bool) {
         let undrawn = |frame: &RecordedFrame| {
             let redrawn = frame.decision.as_ref().is_some_and(|had| had.redrawn);
             redrawn && frame.fell_back()
@@ -336,15 +343,23 @@ impl Renderer {
         let had = self.pairs.room();
         self.pairs.review(budget);
         self.pairs.make(request.scene.count, tiles, needed);
-        if matches!(request.settings.raster, Raster::Auto | Raster::Tiles) && !self.pairs.is_fixed()
+        let mut expected = 0;
+        if matches!(request.settings.raster, Raster::Auto | Raster::Tiles)
+            && (fell_back || !self.pairs.is_fixed())
         {
             let whole = request.whole.unwrap_or(request.camera);
-            let expected = self.estimate.update(request.scene, request.camera, whole);
+            expected = self.estimate.update(request.scene, request.camera, whole);
+        }
+        if !self.pairs.is_fixed() {
             self.pairs.expect(expected);
         }
         let has_grown = self.pairs.room() > had;
-        // Where no more room can be made, quads are drawn at once.
-        request.submission == Submission::Awaited && (!fell_back || has_grown)
+        let lacks_room = fell_back && !has_grown && expected > self.pairs.room();
+        match request.submission {
+            // Where no more room can be made, quads are drawn at once.
+            Submission::Awaited => (!fell_back || has_grown, false),
+            Submission::InFlight => (false, lacks_room),
+        }
     }
 
     /// Finds the part of a plan that has to be computed after the frame before it.

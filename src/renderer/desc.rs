@@ -18,7 +18,8 @@ pub enum ColorSpace {
     /// The attachment has linear light, as in a host that lights in HDR and encodes its picture afterwards. Splats are blended
     /// as stored; the resulting picture is converted to linear light once and blended `over` the host's pixels. Only tiles do
     /// so: another [`Raster`](crate::Raster) is refused, and so is a depth that is not [readable](DepthDesc::readable). A frame
-    /// whose tiles have no room draws nothing, as [`fell_back`](super::Renderer::fell_back) says.
+    /// whose tiles have no room draws nothing, as [`fell_back`](super::Renderer::fell_back) says, and where no more room can be
+    /// made, the next one is refused.
     /// [`Show::Count`](crate::Show::Count), [`Show::Mean`](crate::Show::Mean) and [`Show::Strongest`](crate::Show::Strongest),
     /// which are numbers, stay as they are.
     Linear,

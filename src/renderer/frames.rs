@@ -28,6 +28,8 @@ pub(super) struct Decision {
     pub(super) redrawn: bool,
     /// True when only tiles show what is asked for, so that no quads can take their place.
     pub(super) needs_tiles: bool,
+    /// True when the tiles will have no room, as those of a frame before it had none.
+    pub(super) lacks_room: bool,
     /// True when it is the first to use a pipeline: drivers may compile that within the frame.
     pub(super) is_first_use: bool,
 }

@@ -1,7 +1,7 @@
 //! How a frame is submitted, and its outcome: who submits it states the one before and reads the other afterwards.
 
 use rara_base::error::Error;
-use rara_scene::settings::Settings;
+use rara_scene::settings::{Settings, Show};
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Submission {
@@ -32,10 +32,13 @@ impl Outcome {
     /// The error of a picture of which this is [`NoRoom`](Self::NoRoom).
     #[doc(hidden)]
     pub fn no_room(settings: &Settings) -> Error {
+        let made = match settings.show {
+            Show::Colour => "what ColorSpace::Linear asks for is".into(),
+            show => format!("Show::{show:?} is"),
+        };
         Error::Memory(format!(
-            "the tiles' lists are larger than there is room for, and Show::{:?} is made by tiles alone; draw a smaller picture, or \
-             fewer splats",
-            settings.show
+            "the tiles' lists are larger than there is room for, and {made} made by tiles alone; raise the memory budget or the \
+             pairs that were reserved, draw a smaller picture, or fewer splats"
         ))
     }
 }

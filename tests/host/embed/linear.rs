@@ -1,8 +1,9 @@
 //! A host of linear light: splats are blended as stored, and their picture meets the host's pixels as linear light.
 
 use super::*;
+use crate::canvas::{Canvas, CanvasDesc, Frame, with_host};
 use rara::gpu::DeviceShape;
-use rara::{ColorSpace, DepthMap, Error, Show};
+use rara::{ColorSpace, DepthMap, Error, FrameLimits, Show};
 
 /// The linear light of a colour as sRGB stores it.
 fn linear(stored: f32) -> f32 {
@@ -193,4 +194,37 @@ fn linear_light_is_of_colours_and_of_tiles() {
     refused(behind.configure(&engine.scene, &camera, &clip, &settings));
     drop(behind);
     engine.close();
+}
+
+/// Where only tiles could draw a frame and there is no room for them, a host is told so instead of getting empty frames.
+#[test]
+fn frames_of_linear_light_that_stay_without_room_are_refused() {
+    let scene = scene();
+    let (camera, clip, settings) = frames(&scene).swap_remove(1);
+    let size = (VIEW.width, VIEW.height);
+    with_host(true, |host, device| {
+        let canvas = Canvas::new(&host.lend(), device, CanvasDesc::new(size, FLOATS));
+        let desc = RendererDesc::new(FLOATS).bindings(Bindings::Mixed);
+        let desc = desc.color_space(ColorSpace::Linear);
+        let mut renderer = Renderer::new(device, desc).expect("a renderer");
+        let there = SceneBuffers::upload(device, &scene, ShFormat::Float).expect("uploads");
+        let limits = FrameLimits::new(size, scene.len() as u32).planes(1);
+        let mut filled = |pairs| {
+            let limits = limits.clone().pairs(pairs);
+            renderer.reserve(&limits).expect("there is memory");
+            let configured = renderer.configure(&there, &camera, &clip, &settings);
+            let pixels = canvas.draw_frame(&mut renderer, &there, configured, &Frame::new(size));
+            let next = renderer.configure(&there, &camera, &clip, &settings);
+            let filled = pixels.iter().filter(|pixel| pixel[3] > 0.1).count();
+            (filled, next.map(drop))
+        };
+        let (none, refused) = filled(Some(16));
+        assert_eq!(none, 0, "the device alone knows that there is no room");
+        let refused = refused.expect_err("the next frame would be empty too");
+        let text = refused.to_string();
+        assert!(matches!(refused, Error::Memory(_)) && text.contains("ColorSpace::Linear"));
+        let (all, next) = filled(None);
+        assert!(all > 1_000, "{all} pixels");
+        next.expect("there is room");
+    });
 }

@@ -74,6 +74,11 @@ pub struct RaraLayer {
     pub state: *const RaraLayerState,
     /// Its own clip, as rara_scene_buffers_set_layer_clip sets it; null, the default, for the frame's clip.
     pub clip: *const RaraClip,
+    /// How many Gaussians it has room for, so that rara_scene_buffers_replace_layer can give it as many later; less than it has,
+    /// as the default of 0, is no room for more. Room takes as much memory on the device as Gaussians do. A layer without
+    /// Gaussians and with room is one to be added later. No layer has room in a scene of Gaussians that rara_gaussians_select
+    /// has divided.
+    pub room: u32,
 }
 
 versioned!(RaraLayer);
@@ -95,6 +100,7 @@ impl RaraLayer {
             name: name.to_owned(),
             state: LayerState::default(),
             clip: clip::clip(self.clip, &format!("{place}.clip"))?,
+            room: self.room,
         };
         if !self.state.is_null() {
             layer.state = state(self.state, &format!("{place}.state"), name)?;
@@ -110,7 +116,16 @@ pub(crate) unsafe fn given(layers: *const RaraLayer, layer_count: usize) -> Resu
     let layers: Vec<RaraLayer> = read_list(layers, layer_count, Versioned::BLANK, "layers")?;
     let layers = layers.iter().enumerate();
     let made = layers.map(|(index, layer)| layer.layer(&format!("layers[{index}]")));
-    made.collect()
+    let made: Vec<HostLayer> = made.collect::<Result<_>>()?;
+    let is_divided = made.iter().any(|layer| layer.gaussians.part.is_some());
+    match made.iter().position(|layer| is_divided && layer.has_room()) {
+        Some(index) => invalid(format!(
+            "layers[{index}].room is {}, beside layers of Gaussians that rara_gaussians_select has divided, whose numbers leave \
+             no room: give 0",
+            made[index].room
+        )),
+        None => Ok(made),
+    }
 }
 
 /// The state of a layer that stands where it was made, visible and with the opacities of its Gaussians. `state_size` is
@@ -170,8 +185,9 @@ pub unsafe extern "C" fn rara_scene_buffers_set_layer_state(
     })
 }
 
-/// Replaces the Gaussians of a layer by as many or fewer than it was uploaded with, and waits for it. Nothing of the other layers
-/// is touched, and the layer keeps its name, state and clip. The host has waited for all frames that show the scene; a frame
+/// Replaces the Gaussians of a layer by as many or fewer than it has room for, and waits for it. That adds a layer which was
+/// uploaded empty with room, and removes one whose Gaussians are replaced by none. Nothing of the other layers is touched, and
+/// the layer keeps its name, state and clip. The host has waited for all frames that show the scene; a frame
 /// that was configured before, and a RaraCut, are configured anew. RARA_ERROR_INVALID for a number that no layer has, for more
 /// Gaussians than it has room for or of a higher degree than the scene's, for colours of another light than the other layers',
 /// and for a layer of Gaussians that rara_gaussians_select has divided.

@@ -19,6 +19,8 @@ pub struct RaraLayerInfo {
     pub name: *const c_char,
     /// Gaussians in the layer.
     pub count: u64,
+    /// Gaussians that it has room for.
+    pub room: u64,
 }
 
 versioned!(RaraLayerInfo);
@@ -51,10 +53,12 @@ pub unsafe extern "C" fn rara_scene_buffers_layer_info(
     guard(|| {
         let scene = alive(scene, "scene")?;
         check_index(&scene, index)?;
+        let layer = &scene.buffers.layers()[index];
         let found = RaraLayerInfo {
             struct_size: size_of::<RaraLayerInfo>(),
             name: scene.names[index].as_ptr(),
-            count: scene.buffers.layers()[index].gaussians().into(),
+            count: layer.gaussians().into(),
+            room: layer.room().into(),
         };
         write(info, info_size, &found, "info")
     })

@@ -46,6 +46,15 @@ pub(crate) struct HostLayer {
     pub(crate) state: LayerState,
     /// Its own; `None` where the frame's holds.
     pub(crate) clip: Option<Clip>,
+    /// How many Gaussians it has room for, if that is more than it has.
+    pub(crate) room: u32,
+}
+
+impl HostLayer {
+    /// True where it has room for more Gaussians than it has.
+    pub(crate) fn has_room(&self) -> bool {
+        self.room as usize > self.gaussians.gaussians.len()
+    }
 }
 
 /// What the Gaussians of these layers are numbered by.
@@ -62,8 +71,9 @@ pub(crate) fn numbers_of(given: &[HostLayer]) -> Vec<Numbers<'_>> {
 /// The scene of these layers, whose numbers are those of [`numbers_of`].
 pub(crate) fn of_layers<'a>(given: &'a [HostLayer], numbers: &'a [Numbers<'_>]) -> Scene<'a> {
     let layer = |(given, numbers): (&'a HostLayer, &'a Numbers<'_>)| {
-        let mut layer =
-            Layer::new(given.name.as_str(), &given.gaussians.gaussians).with(given.state);
+        let mut layer = Layer::new(given.name.as_str(), &given.gaussians.gaussians)
+            .with(given.state)
+            .with_room(given.room);
         if let Some(clip) = &given.clip {
             layer = layer.clipped(clip.clone());
         }

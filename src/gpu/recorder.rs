@@ -332,32 +332,35 @@ impl<'a> Recorder<'a> {
         part
     }
 
-    /// Copies so many bytes from an offset of a buffer that is not ours, to an offset of one that is.
+    /// Copies regions, none of which meets another, from a buffer that is not ours to one that is.
     ///
     /// # Safety
     ///
-    /// `source` must be this device's, hold `size` bytes there, be made to be copied from, and outlive the execution; its
+    /// `source` must be this device's, hold the regions' bytes, be made to be copied from, and outlive the execution; its
     /// bytes must be visible to the copy.
     pub unsafe fn copy_from(
         &mut self,
-        (source, from): (vk::Buffer, u64),
-        (target, to): (&Buffer, u64),
-        size: u64,
+        source: vk::Buffer,
+        target: &Buffer,
+        regions: &[vk::BufferCopy],
     ) {
-        target.check_range(to, size);
-        if size == 0 {
+        for region in regions {
+            target.check_range(region.dst_offset, region.size);
+        }
+        let regions: Vec<_> = regions
+            .iter()
+            .copied()
+            .filter(|region| region.size > 0)
+            .collect();
+        if regions.is_empty() {
             return;
         }
         self.before(&[(target.handle(), Access::TransferWrite)]);
-        let region = vk::BufferCopy::default()
-            .src_offset(from)
-            .dst_offset(to)
-            .size(size);
         // SAFETY: `begin`'s contract covers `cmd` and `target`, the caller vouches for `source`.
         unsafe {
             self.device
                 .raw()
-                .cmd_copy_buffer(self.cmd, source, target.handle(), &[region])
+                .cmd_copy_buffer(self.cmd, source, target.handle(), &regions)
         };
     }
 

@@ -10,10 +10,10 @@ use bytemuck::cast_slice;
 use crate::passes::cut_plan::SceneFacts;
 use crate::passes::pair_estimate::PairSample;
 use crate::passes::scene_layer::{
-    PackedLayer, SceneLayer, bytes_each, join_sets, layer_index, sizes, write_in_order,
+    PackedLayer, SceneLayer, join_sets, layer_index, sizes, write_in_order, written_bytes,
 };
 use crate::passes::sh_storage;
-use crate::types::{Block, Gaussian};
+use crate::types::Gaussian;
 use rara_base::counted::counted;
 use rara_base::error::{Error, Result};
 use rara_base::limits;
@@ -36,6 +36,7 @@ pub struct SceneBuffers {
     pub(crate) blocks: Buffer,
     /// True when the Gaussians lie in another order than that of their numbers.
     pub(crate) reordered: bool,
+    /// The Gaussians that the layers have room for: their numbers are below it.
     pub(crate) count: u32,
     pub(crate) sh_degree: u32,
     pub(crate) sh_format: ShFormat,
@@ -85,8 +86,9 @@ impl SceneBuffers {
         device.upload(&self.blocks, blocks, cast_slice(&layer.blocks))
     }
 
-    /// Replaces the Gaussians of a layer, of the number that it has in [`layers`](Self::layers), by as many or fewer than it was
-    /// uploaded with ([`SceneLayer::room`]), and waits for it. Nothing of the other layers is touched, and the layer keeps its
+    /// Replaces the Gaussians of a layer, of the number that it has in [`layers`](Self::layers), by as many or fewer than it has
+    /// room for ([`SceneLayer::room`]), and waits for it. That adds a layer which was uploaded empty with room
+    /// ([`Layer::with_room`](crate::Layer::with_room)), and removes one whose Gaussians are replaced by none. Nothing of the other layers is touched, and the layer keeps its
     /// name, state and clip. A frame draws the same as with a scene that was uploaded with these Gaussians; their numbers
     /// ([`Pick`](crate::Pick)) are the first ones of the layer.
     ///
@@ -130,15 +132,9 @@ impl SceneBuffers {
             "layer_staging_bytes",
         )?;
         let packed = self.packed(index, gaussians)?;
-        let sizes = packed.sizes();
-        let [gaussian_bytes, sh_bytes, _] = sizes;
-        let offset = staging.offset;
-        packed.write(
-            staging.bytes,
-            [0, gaussian_bytes, gaussian_bytes + sh_bytes],
-        );
+        packed.write(staging.bytes);
         // SAFETY: the caller vouches for `cmd`, and keeps the buffers alive until it has executed.
-        unsafe { self.copy(cmd, (staging.buffer, offset), (packed.offsets(), sizes)) };
+        unsafe { self.copy(cmd, staging.buffer, &[packed.copies(staging.offset)]) };
         self.hold(index, replaced, &packed);
         Ok(())
     }
@@ -146,12 +142,8 @@ impl SceneBuffers {
     /// Bytes of staging memory that [`replace_layer_with`](Self::replace_layer_with) needs for so many Gaussians in place of
     /// those of a layer; 0 for a number that no layer has.
     pub fn layer_staging_bytes(&self, index: usize, gaussians: u32) -> u64 {
-        let Some(layer) = self.layers.get(index) else {
-            return 0;
-        };
-        let each = bytes_each(self.sh()).iter().sum::<usize>() as u64;
-        let blocks = u64::from(layer.block_count());
-        u64::from(gaussians) * each + blocks * size_of::<Block>() as u64
+        let layer = self.layers.get(index);
+        layer.map_or(0, |layer| written_bytes(gaussians, layer.room(), self.sh()))
     }
 
     /// A layer with other Gaussians, and the sample of the scene with it.
@@ -161,7 +153,7 @@ impl SceneBuffers {
         let refuse = |what: String| Err(Error::Invalid(format!("layer '{name}' {what}")));
         if count > room as usize {
             return refuse(format!(
-                "was uploaded with {}, so that it has no room for {count}: upload the scene",
+                "was uploaded with room for {}, so that it has no room for {count}: upload the scene",
                 counted(room, "Gaussian")
             ));
         }
@@ -188,11 +180,13 @@ impl SceneBuffers {
     /// The Gaussians of a layer as the device gets them in its place.
     fn packed<'a>(&self, index: usize, gaussians: &'a Gaussians) -> Result<PackedLayer<'a>> {
         let layer = self.layer(index)?;
-        let (first_block, numbers) = (layer.first_block, layer.numbers()?);
         let gaussians = Cow::Borrowed(gaussians);
-        let mut packed = PackedLayer::new(gaussians, first_block, numbers, self.sh());
-        packed.fill_blocks(layer.block_count() as usize);
-        Ok(packed)
+        Ok(PackedLayer::new(
+            gaussians,
+            layer,
+            layer.numbers()?,
+            self.sh(),
+        ))
     }
 
     /// How spherical harmonics are stored, and how many numbers there are of each Gaussian.
@@ -290,8 +284,12 @@ impl SceneBuffers {
 
     /// Bytes of staging memory that [`upload_with`](Self::upload_with) needs for a scene.
     pub fn staging_bytes<'a>(scene: impl Into<Scene<'a>>, format: ShFormat) -> u64 {
-        let [gaussians, sh, blocks] = sizes(&scene.into(), format);
-        gaussians + sh + blocks
+        let scene = scene.into();
+        let sh = (format, 3 * sh_coefficients(scene.sh_degree()));
+        let layers = scene.layers().iter();
+        let bytes =
+            layers.map(|layer| written_bytes(layer.gaussians().len() as u32, layer.room(), sh));
+        bytes.sum()
     }
 
     /// Uploads a scene by the host's own means: allocates the buffers, writes the scene into the host's staging memory
@@ -320,44 +318,40 @@ impl SceneBuffers {
         format: ShFormat,
     ) -> Result<Self> {
         let scene = scene.into();
-        let sizes = sizes(&scene, format);
-        staging.check(sizes.iter().sum(), "staging_bytes")?;
+        staging.check(Self::staging_bytes(&scene, format), "staging_bytes")?;
         let (buffers, packed) = Self::allocate(device, scene, format)?;
-        let [gaussians, sh, _] = sizes;
         let mut bytes = staging.bytes;
+        let (mut begin, mut copies) = (0, Vec::new());
         for mut layer in packed {
             layer.pack_in_place();
-            // The places between the layers hold no Gaussian, and nothing reads them.
-            let [first, second, third] = layer.offsets();
-            let size = bytes.size();
-            layer.write(
-                bytes.part(0..size),
-                [first, gaussians + second, gaussians + sh + third],
-            );
+            let end = begin + layer.size();
+            layer.write(bytes.part(begin as usize..end as usize));
+            copies.push(layer.copies(staging.offset + begin));
+            begin = end;
         }
         // SAFETY: the caller vouches for `cmd`, and keeps the buffers alive until it has executed.
-        unsafe { buffers.copy(cmd, (staging.buffer, staging.offset), ([0; 3], sizes)) };
+        unsafe { buffers.copy(cmd, staging.buffer, &copies) };
         Ok(buffers)
     }
 
-    /// Records the copies to places of the three buffers, of so many bytes each, which follow each other in a host's buffer.
+    /// Records copies of layers to their places in the three buffers from a host's buffer.
     ///
     /// # Safety
     /// As for [`upload_with`](Self::upload_with); the host's buffer holds the bytes.
     unsafe fn copy(
         &self,
         cmd: vk::CommandBuffer,
-        (source, mut from): (vk::Buffer, u64),
-        (places, sizes): ([u64; 3], [u64; 3]),
+        source: vk::Buffer,
+        copies: &[[vk::BufferCopy; 3]],
     ) {
         let targets = [&self.gaussians, &self.sh, &self.blocks];
         // SAFETY: the caller vouches for `cmd`, and keeps the buffers alive until it has executed.
         let mut recorder = unsafe { Recorder::begin(self.gaussians.device(), cmd, None) };
         recorder.label("upload", |recorder| {
-            for (target, size) in targets.into_iter().zip(places).zip(sizes) {
-                // SAFETY: the caller vouches for the buffer, which holds so many bytes here.
-                unsafe { recorder.copy_from((source, from), target, size) };
-                from += size;
+            for (index, target) in targets.into_iter().enumerate() {
+                let regions: Vec<_> = copies.iter().map(|layer| layer[index]).collect();
+                // SAFETY: the caller vouches for the buffer, which holds the bytes of the regions.
+                unsafe { recorder.copy_from(source, target, &regions) };
             }
         });
     }
@@ -369,34 +363,34 @@ impl SceneBuffers {
         format: ShFormat,
     ) -> Result<(Self, Vec<PackedLayer<'a>>)> {
         // A layer's last block may have places that hold nothing.
-        let places = scene.layers().len() * limits::BLOCK_SIZE as usize + scene.gaussians();
+        let places = scene.layers().len() as u64 * u64::from(limits::BLOCK_SIZE) + scene.room();
+        let room = counted(scene.room(), "Gaussian");
         if u32::try_from(places).is_err() {
             return Err(Error::Invalid(format!(
-                "a scene of {} is beyond the 2^32 of an index",
-                counted(scene.gaussians(), "Gaussian")
+                "a scene of {room} is beyond the 2^32 of an index"
             )));
         }
         scene.check()?;
         let sizes = sizes(&scene, format);
         if sizes[1] > u64::from(u32::MAX) * 4 {
             return Err(Error::Invalid(format!(
-                "{} of spherical-harmonics degree {} need more than 2^32 numbers; lower the degree or store them in fewer bits",
-                counted(scene.gaussians(), "Gaussian"),
+                "{room} of spherical-harmonics degree {} need more than 2^32 numbers; lower the degree or store them in fewer bits",
                 scene.sh_degree()
             )));
         }
-        let what = format!("a scene of {}", counted(scene.gaussians(), "Gaussian"));
-        device.check_budget(&what, sizes.iter().sum(), 0)?;
+        let bytes = sizes.iter().sum();
+        device.check_budget(&format!("a scene of {room}"), bytes, 0)?;
         let sh = (format, 3 * sh_coefficients(scene.sh_degree()));
         let (mut layers, mut packed) = (Vec::<SceneLayer>::new(), Vec::new());
         let numbers: Vec<_> = scene.numbers().collect();
-        let (count, sh_degree) = (scene.gaussians() as u32, scene.sh_degree());
+        let (count, sh_degree) = (scene.room() as u32, scene.sh_degree());
         let sample = PairSample::new(&scene);
         for (layer, &numbers) in scene.into_layers().into_iter().zip(&numbers) {
             let first_block = layers.last().map_or(0, SceneLayer::block_end);
-            layers.push(SceneLayer::new(&layer, first_block, numbers));
+            let held = SceneLayer::new(&layer, first_block, numbers);
             let gaussians = layer.into_gaussians();
-            packed.push(PackedLayer::new(gaussians, first_block, numbers, sh));
+            packed.push(PackedLayer::new(gaussians, &held, numbers, sh));
+            layers.push(held);
         }
         join_sets(&mut layers, &numbers);
         let id = NEXT_ID.fetch_add(1, Ordering::Relaxed);
@@ -461,6 +455,7 @@ impl SceneBuffers {
     /// Replaces the bounds by ones that settle nothing, so that each Gaussian is looked at for itself.
     #[cfg(test)]
     pub(crate) fn undecide(&self, device: &Device) -> Result<()> {
+        use crate::types::Block;
         const FAR: f32 = 1e30;
         let anywhere = Block {
             low_reach: [-FAR, -FAR, -FAR, FAR],

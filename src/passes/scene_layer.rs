@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 use std::collections::HashMap;
 
+use ash::vk;
 use bytemuck::cast_slice;
 use glam::{DVec3, Vec3};
 
@@ -47,11 +48,10 @@ impl SceneLayer {
     /// That of a layer whose Gaussians begin with a block, and have these numbers.
     pub(crate) fn new(layer: &Layer<'_>, first_block: u32, numbers: Numbers<'_>) -> Self {
         let corners = corners(layer.gaussians());
-        let count = layer.gaussians().len() as u32;
         Self {
             name: layer.name().into(),
-            gaussians: count,
-            room: count,
+            gaussians: layer.gaussians().len() as u32,
+            room: layer.room(),
             first_number: numbers.set().is_none().then(|| numbers.of(0)),
             first_block,
             box_around: corners,
@@ -88,7 +88,8 @@ impl SceneLayer {
     }
 
     /// The most Gaussians that can take the place of its own
-    /// ([`SceneBuffers::replace_layer`](super::SceneBuffers::replace_layer)): as many as it was uploaded with.
+    /// ([`SceneBuffers::replace_layer`](super::SceneBuffers::replace_layer)): as many as it was uploaded with, or the
+    /// [room](Layer::with_room) that it was given then.
     pub fn room(&self) -> u32 {
         self.room
     }
@@ -204,16 +205,27 @@ pub(super) fn bytes_each((format, numbers): (ShFormat, usize)) -> [usize; 2] {
     [size_of::<Gaussian>(), words * size_of::<u32>()]
 }
 
-/// Bytes of the Gaussians, their spherical harmonics, and the bounds of their blocks.
+/// Bytes of the scene's buffers: the Gaussians, their spherical harmonics, and the bounds of their blocks.
 pub(super) fn sizes(scene: &Scene<'_>, format: ShFormat) -> [u64; 3] {
     let [gaussian, sh] = bytes_each((format, 3 * sh_coefficients(scene.sh_degree())));
-    let block = limits::BLOCK_SIZE as usize;
+    let block = u64::from(limits::BLOCK_SIZE);
     let (mut blocks, mut end) = (0, 0);
     for layer in scene.layers() {
-        end = blocks * block + layer.gaussians().len();
+        end = blocks * block + u64::from(layer.room());
         blocks = end.div_ceil(block);
     }
-    [end * gaussian, end * sh, blocks * size_of::<Block>()].map(|bytes| bytes as u64)
+    [
+        end * gaussian as u64,
+        end * sh as u64,
+        blocks * size_of::<Block>() as u64,
+    ]
+}
+
+/// Bytes that are written of a layer with so many Gaussians and room for so many; `sh` as for [`bytes_each`].
+pub(super) fn written_bytes(gaussians: u32, room: u32, sh: (ShFormat, usize)) -> u64 {
+    let each = bytes_each(sh).iter().sum::<usize>() as u64;
+    let blocks = u64::from(room.div_ceil(limits::BLOCK_SIZE));
+    u64::from(gaussians) * each + blocks * size_of::<Block>() as u64
 }
 
 /// The corners of the box around all centres.
@@ -239,31 +251,29 @@ pub(super) struct PackedLayer<'a> {
 }
 
 impl<'a> PackedLayer<'a> {
-    /// Orders the Gaussians of a layer that begins with a block and has numbers in the scene; `sh` as the field says.
+    /// Orders the Gaussians of a layer, which have numbers in the scene; `sh` as the field says. Blocks that there is room for
+    /// hold nothing.
     pub(super) fn new(
         gaussians: Cow<'a, Gaussians>,
-        first_block: u32,
+        layer: &SceneLayer,
         numbers: Numbers<'a>,
         sh: (ShFormat, usize),
     ) -> Self {
         let order = block_order::order(&gaussians);
+        let mut blocks = block_order::blocks(&gaussians, &order);
+        blocks.resize(layer.block_count() as usize, block_order::EMPTY);
         Self {
-            blocks: block_order::blocks(&gaussians, &order),
+            blocks,
             arrays: match gaussians {
                 Cow::Borrowed(gaussians) => Cow::Borrowed(gaussians.arrays()),
                 Cow::Owned(gaussians) => Cow::Owned(gaussians.into_arrays()),
             },
             has_packed: false,
             order,
-            first_block,
+            first_block: layer.first_block,
             numbers,
             sh,
         }
-    }
-
-    /// Adds blocks that hold nothing, up to so many in all.
-    pub(super) fn fill_blocks(&mut self, count: usize) {
-        self.blocks.resize(count, block_order::EMPTY);
     }
 
     /// Bytes of its Gaussians, their spherical harmonics and its blocks.
@@ -272,15 +282,14 @@ impl<'a> PackedLayer<'a> {
         [gaussians, sh, size_of_val(&self.blocks[..])].map(|bytes| bytes as u64)
     }
 
-    /// Writes them to three places.
-    pub(super) fn write(&self, mut to: WriteOnly<'_>, places: [u64; 3]) {
-        let [gaussians, sh, blocks] = places.map(|place| place as usize);
-        let [gaussian_bytes, sh_bytes, _] = self.sizes().map(|size| size as usize);
-        let target = to.part(gaussians..gaussians + gaussian_bytes);
+    /// Writes them one after the other.
+    pub(super) fn write(&self, mut to: WriteOnly<'_>) {
+        let [gaussians, sh, _] = self.sizes().map(|size| size as usize);
+        let target = to.part(0..gaussians);
         write_in_order(target, &self.order, |i, out| out.push(self.gaussian(i)));
-        let target = to.part(sh..sh + sh_bytes);
+        let target = to.part(gaussians..gaussians + sh);
         write_in_order(target, &self.order, |i, out| self.append_sh(i, out));
-        to.write(blocks, cast_slice(&self.blocks));
+        to.write(gaussians + sh, cast_slice(&self.blocks));
     }
 
     /// Bytes of a Gaussian, and of its spherical harmonics.
@@ -294,6 +303,21 @@ impl<'a> PackedLayer<'a> {
         let [gaussian, sh] = self.bytes_each().map(|bytes| first * bytes as u64);
         let blocks = u64::from(self.first_block) * size_of::<Block>() as u64;
         [gaussian, sh, blocks]
+    }
+
+    /// Bytes of all that is written of it.
+    pub(super) fn size(&self) -> u64 {
+        self.sizes().iter().sum()
+    }
+
+    /// The copies to its three places of what [`write`](Self::write) has written to an offset.
+    pub(super) fn copies(&self, mut from: u64) -> [vk::BufferCopy; 3] {
+        let (offsets, sizes) = (self.offsets(), self.sizes());
+        [0, 1, 2].map(|index| {
+            let copy = vk::BufferCopy::default().src_offset(from);
+            from += sizes[index];
+            copy.dst_offset(offsets[index]).size(sizes[index])
+        })
     }
 
     /// The Gaussians' numbers in the scene, in the order of the device.

@@ -73,8 +73,9 @@ impl PickTicket {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Pick {
-    /// The number of the splat's Gaussian in the scene: its number in its layer plus the number of Gaussians in all layers
-    /// before, or as [`Layer::numbered`](crate::Layer::numbered) says.
+    /// The number of the splat's Gaussian in the scene: its number in its layer plus the room of all layers before
+    /// ([`SceneLayer::room`](crate::SceneLayer::room)), which is the number of Gaussians that they were uploaded with where none
+    /// was given room for more; or as [`Layer::numbered`](crate::Layer::numbered) says.
     pub number: u32,
     /// The number of its layer, in [`SceneBuffers::layers`].
     pub layer: usize,

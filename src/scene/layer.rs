@@ -73,6 +73,8 @@ pub struct Layer<'a> {
     gaussians: Cow<'a, Gaussians>,
     state: LayerState,
     clip: Option<Clip>,
+    /// The Gaussians that it has room for, if they are more than it has.
+    room: u32,
     /// The number of the first Gaussian of the set that the layer is a part of, and its Gaussians' numbers in that.
     pub(super) numbers: Option<(u32, &'a [u32])>,
 }
@@ -95,6 +97,7 @@ impl<'a> Layer<'a> {
             gaussians,
             state: LayerState::default(),
             clip: None,
+            room: 0,
             numbers: None,
         }
     }
@@ -113,6 +116,23 @@ impl<'a> Layer<'a> {
     pub fn clipped(mut self, clip: Clip) -> Self {
         self.clip = Some(clip);
         self
+    }
+
+    /// Returns the same layer with room for `count` Gaussians in all, so that `SceneBuffers::replace_layer` can give it as many
+    /// later; a layer without Gaussians and with room is one to be added later. Less than the layer has is no room. Room takes as
+    /// much memory on the device as Gaussians do, in the scene and in the frames that show it. Layers behind this one
+    /// [number on](Scene) from its room, so that no number changes when a layer is filled or emptied. What is put there later has
+    /// at most the [degree](Scene::sh_degree) of the scene, which an empty layer of a higher degree raises. A
+    /// [part](Self::numbered) of a set has no room for more.
+    #[must_use]
+    pub fn with_room(mut self, count: u32) -> Self {
+        self.room = count;
+        self
+    }
+
+    /// Returns the number of Gaussians that the layer has room for: those that it has, or more.
+    pub fn room(&self) -> u32 {
+        self.room.max(self.gaussians.len() as u32)
     }
 
     /// Returns the same layer as a part of a set of Gaussians, as [`Gaussians::into_parts`] makes them. `numbers` are the
@@ -136,6 +156,7 @@ impl<'a> Layer<'a> {
             gaussians: Cow::Borrowed(gaussians),
             state: self.state,
             clip: self.clip.clone(),
+            room: self.room,
             numbers: self.numbers,
         }
     }
@@ -143,9 +164,16 @@ impl<'a> Layer<'a> {
     /// That a frame can show it so.
     ///
     /// # Errors
-    /// The errors of [`LayerState::check`], and [`Error::Invalid`] for a clip of too many surfaces.
+    /// The errors of [`LayerState::check`], and [`Error::Invalid`] for a clip of too many surfaces and for a part of a set that
+    /// has room for more.
     #[doc(hidden)]
     pub fn check(&self) -> Result<()> {
+        if self.numbers.is_some() && self.room as usize > self.gaussians.len() {
+            return Err(Error::Invalid(format!(
+                "layer '{}' is a part of other Gaussians, whose numbers leave no room for more: leave out its room or its numbers",
+                self.name
+            )));
+        }
         self.state.check(&self.name)?;
         check_clip(&self.name, self.clip.as_ref())
     }
@@ -185,6 +213,9 @@ impl<'a> Layer<'a> {
 
 /// A scene to upload: layers that are sorted and blended together, even where they overlap. If two Gaussians are equally deep,
 /// the one of the earlier layer is in front, unless the layers are [parts](Layer::numbered) of one set.
+///
+/// The Gaussians of a scene are numbered layer by layer: the first number of a layer is the [room](Layer::room) of all layers
+/// before it, which is the number of their Gaussians where no layer has room for more.
 ///
 /// ```
 /// # use rara_scene as rara;
@@ -226,7 +257,7 @@ impl<'a> Scene<'a> {
         }
         self.layers.iter().try_for_each(Layer::check)?;
         self.check_light()?;
-        numbers::check(&self.layers, self.gaussians())
+        numbers::check(&self.layers, self.room())
     }
 
     /// Its layers that have Gaussians, with how these were trained.
@@ -268,13 +299,13 @@ impl<'a> Scene<'a> {
     /// The numbers of each layer's Gaussians.
     #[doc(hidden)]
     pub fn numbers(&self) -> impl Iterator<Item = Numbers<'a>> {
-        let mut before = 0;
+        let mut before = 0_u32;
         self.layers.iter().map(move |layer| {
             let numbers = match layer.numbers {
                 Some((first, in_set)) => Numbers::of_part(first, in_set),
                 None => Numbers::of_whole(before),
             };
-            before += layer.gaussians.len() as u32;
+            before = before.wrapping_add(layer.room()); // more than 32 bits hold are refused
             numbers
         })
     }
@@ -282,6 +313,15 @@ impl<'a> Scene<'a> {
     /// Returns the number of Gaussians of all layers.
     pub fn gaussians(&self) -> usize {
         self.layers.iter().map(|layer| layer.gaussians.len()).sum()
+    }
+
+    /// How many Gaussians the layers have room for.
+    #[doc(hidden)]
+    pub fn room(&self) -> u64 {
+        self.layers
+            .iter()
+            .map(|layer| u64::from(layer.room()))
+            .sum()
     }
 
     /// Returns the highest degree of spherical harmonics of any layer.

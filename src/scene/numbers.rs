@@ -40,15 +40,15 @@ impl<'a> Numbers<'a> {
     }
 }
 
-/// Checks that the layers' Gaussians, `count` in all, have the numbers below `count`, and each its own.
+/// Checks that the Gaussians of layers, with room for `room` in all, have numbers below that, and each its own.
 ///
 /// # Errors
 /// [`Error::Invalid`] names the layer, and what is wrong with its numbers.
-pub(super) fn check(layers: &[Layer<'_>], count: usize) -> Result<()> {
+pub(super) fn check(layers: &[Layer<'_>], room: u64) -> Result<()> {
     if layers.iter().all(|layer| layer.numbers.is_none()) {
         return Ok(());
     }
-    let mut taken = vec![false; count];
+    let mut taken = vec![false; room as usize];
     let mut before = 0;
     for layer in layers {
         let (name, own) = (layer.name(), layer.gaussians().len());
@@ -56,7 +56,7 @@ pub(super) fn check(layers: &[Layer<'_>], count: usize) -> Result<()> {
             Some((first, numbers)) => (u64::from(first), Some(numbers)),
             None => (before, None),
         };
-        before += own as u64;
+        before += u64::from(layer.room());
         if let Some(numbers) = in_set.filter(|numbers| numbers.len() != own) {
             return Err(Error::Invalid(format!(
                 "layer '{name}' has {} and {} for them; give one each",
@@ -72,7 +72,7 @@ pub(super) fn check(layers: &[Layer<'_>], count: usize) -> Result<()> {
                 found => {
                     let problem = match found {
                         Some(_) => "which another has too".to_owned(),
-                        None => format!("and the scene's {count} have those below {count}"),
+                        None => format!("and the scene's {room} have those below {room}"),
                     };
                     return Err(Error::Invalid(format!(
                         "Gaussian {index} of layer '{name}' has number {number}, {problem}; number the layers by the sets \

@@ -8,7 +8,7 @@ use rara::ash::vk;
 use rara::scene::{Kind, generate};
 use rara::{
     Clip, ClipOp, ConfiguredFrame, Cut, Gaussians, Layer, Picture, Raster, Renderer, RendererDesc,
-    Scene, SceneBuffers, Settings, ShFormat, Staging,
+    Scene, SceneBuffers, Settings, ShFormat, Show, Staging,
 };
 use rara_gpu::{Bindings, Buffer, BufferDesc, Device, Location};
 
@@ -248,6 +248,70 @@ fn a_layer_is_replaced_while_frames_are_in_flight() {
     assert!(pictures[0] != pictures[1], "a layer changes the picture");
     drop(device);
     assert_eq!(host.close(), Vec::<String>::new());
+}
+
+/// Layers that were uploaded empty with room come and go; the pictures are, to the byte, those of scenes that were uploaded with
+/// what is there, and numbers stay what they are.
+#[test]
+fn layers_come_and_go() {
+    const ROOMS: [u32; 4] = [0, 1_500, 900, 300];
+    let parts = [300, 1_500, 700, 20].map(|count| generate(Kind::Strands, count, count as u64));
+    let mut nothing = Gaussians::default();
+    nothing.set_sh_degree(parts[0].sh_degree());
+    let mut headless = common::headless();
+    let device = headless.device().clone();
+    let camera = common::views(&parts[1], 1, (VIEW.width, VIEW.height))[0];
+    let clip = common::clip(&parts[1], 1, ClipOp::And);
+    for raster in [Raster::Tiles, Raster::Quad] {
+        let settings = Settings::default().raster(raster);
+        let mut draw = |scene: SceneBuffers, settings: &Settings| {
+            headless.show(scene).expect("of this device");
+            let drawn = headless.render(&camera, &clip, settings);
+            drawn.expect("renders");
+            headless.picture().expect("reads back")
+        };
+        let upload = |scene: Scene<'_>| {
+            SceneBuffers::upload(&device, scene, ShFormat::Byte).expect("uploads")
+        };
+        let with_room = [&parts[0], &nothing, &nothing, &nothing].into_iter();
+        let with_room = with_room.zip(ROOMS);
+        let layers = with_room.map(|(part, room)| Layer::new("part", part).with_room(room));
+        let mut scene = upload(layers.collect());
+        let rooms: Vec<_> = scene.layers().iter().map(|layer| layer.room()).collect();
+        assert_eq!(rooms, [300, 1_500, 900, 300]);
+        let mut there = [true, false, false, false];
+        let mut pictures = Vec::new();
+        for change in [3, 1, 2, 0, 3, 1, 0] {
+            there[change] = !there[change];
+            let of = |index: usize| {
+                if there[index] {
+                    &parts[index]
+                } else {
+                    &nothing
+                }
+            };
+            let replaced = scene.replace_layer(change, of(change));
+            replaced.expect("there is room");
+            let whole = (0..parts.len()).filter(|index| there[*index]);
+            let whole = whole.map(|index| Layer::new("part", &parts[index]));
+            let ours = draw(scene.clone(), &settings);
+            let whole = draw(upload(whole.collect()), &settings);
+            assert!(ours == whole, "{raster:?}, {there:?}");
+            pictures.push(ours);
+        }
+        assert!(pictures[0] != pictures[1] && pictures[1] != pictures[2]);
+        let strongest = draw(scene, &Settings::default().show(Show::Strongest));
+        let shown = strongest.pixels.iter().filter(|pixel| pixel[3] > 0.0);
+        let mut seen = [false; 4];
+        for [low, high, layer, _] in shown {
+            let (number, layer) = (*low as u32 + 65536 * *high as u32, *layer as usize);
+            let first: u32 = rooms[..layer].iter().sum();
+            let own = first..first + parts[layer].len() as u32;
+            assert!(own.contains(&number), "{number} of layer {layer}");
+            seen[layer] = true;
+        }
+        assert_eq!(seen, there);
+    }
 }
 
 /// What a layer has no place for is refused, and so is what still shows the Gaussians that were replaced.

@@ -63,6 +63,15 @@ fn layers() {
         ]);
         let truth = rara::SceneBuffers::staging_bytes(scene, rara::ShFormat::Half);
         assert_eq!(bytes, truth);
+        layers[1].room = 700;
+        assert_eq!(staging(layers.as_ptr(), 2, &mut bytes), RARA_OK);
+        let scene = rara::Scene::from_iter([
+            rara::Layer::new("one", &first),
+            rara::Layer::new("two", &second).with_room(700),
+        ]);
+        let truth = rara::SceneBuffers::staging_bytes(scene, rara::ShFormat::Half);
+        assert_eq!(bytes, truth);
+        layers = usual;
 
         layers[1].name = null();
         refused(&layers, "layers[1].name is null");

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::passes::sh_storage;
-use crate::types::Gaussian;
+use crate::types::{Block, Gaussian};
 use rara_gpu::{BufferDesc, Location, testing};
 use rara_scene::{Kind, Layer, generate};
 

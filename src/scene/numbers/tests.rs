@@ -31,6 +31,32 @@ fn layers_number_on_and_parts_have_the_numbers_of_their_set() {
 }
 
 #[test]
+fn numbers_count_the_room_of_the_layers_before() {
+    let [two, three] = [2, 3].map(|count| generate(Kind::General, count, 1));
+    let none = Gaussians::default();
+    let scene = Scene::from_iter([
+        Layer::new("more", &two).with_room(5),
+        Layer::new("later", &none).with_room(4),
+        Layer::new("less", &three).with_room(1),
+        Layer::new("part", &two).numbered(12, &[1, 0]),
+        Layer::new("last", &two),
+    ]);
+    scene.check().expect("each number once");
+    let expected = [
+        vec![0, 1],
+        vec![],
+        vec![9, 10, 11],
+        vec![13, 12],
+        vec![14, 15],
+    ];
+    assert_eq!(numbers(&scene), expected);
+    assert_eq!((scene.gaussians(), scene.room()), (9, 16));
+    let part = Layer::new("part", &two).numbered(0, &[1, 0]).with_room(3);
+    let refused = Scene::from_iter([part]).check().expect_err("no room");
+    assert!(refused.to_string().contains("leave no room"), "{refused}");
+}
+
+#[test]
 fn numbers_that_are_missing_or_not_their_own_are_refused() {
     let two = generate(Kind::General, 2, 1);
     let none = Gaussians::default();

@@ -61,6 +61,7 @@ fn layers_are_the_same_bytes() {
                 let result = rara_scene_buffers_layer_info(uploaded, index, &mut info, size);
                 assert_ok(result);
                 assert_eq!((info.struct_size, info.count), (size, count as u64));
+                assert_eq!(info.room, count as u64);
                 assert_eq!(CStr::from_ptr(info.name), NAMES[index]);
             }
         }

@@ -27,6 +27,8 @@ const uint MAX_SH_COEFFICIENTS = 16u;
 const float ALPHA_MIN = 1.0 / ALPHA_MIN_INVERSE;
 // Gaussians of a block, one workgroup of clip, classify and compact; eight words of its bit masks.
 const uint BLOCK_SIZE = 256u;
+// How much farther than where single precision finds a splat's contour of 1/255 its block takes that to reach, a factor.
+const float REACH_MARGIN = 1.0001;
 // Blocks that a workgroup decides about at a time.
 const uint BLOCK_GROUP_SIZE = 64u;
 // Invocations that add up the counts of a row of runs of blocks. A list of blocks takes a single row on CPU drivers.

@@ -166,6 +166,14 @@ struct Gaussian {
     vec4 rotation; // unit quaternion x y z w
 };
 
+// A Gaussian as a host writes it to be edited: plain floats, of which an edit reads the members that it names.
+struct PlainGaussian {
+    vec4 position_opacity; // centre, the layer's units; opacity 0 to 1
+    vec4 scale; // standard deviations, the layer's units; w unused
+    vec4 rotation; // unit quaternion x y z w
+    vec4 colour; // constant coefficients of the spherical harmonics, red, green and blue; w unused
+};
+
 // The bounds of the Gaussians of a block; a block is BLOCK_SIZE neighbours on a space-filling curve. The reach is the
 // farthest that one's contour of 1/255 can lie from its centre, negative where none has such a contour.
 struct Block {
@@ -268,6 +276,13 @@ const uint SH_BYTE = 2u;
 const uint SH_PACKED = 3u;
 // A packed scale's exponent 0 in a float's: scales are from 2^-15 to 2^16.
 const uint SH_EXPONENT_BIAS = 112u;
+// What an edit reads of plain Gaussians, a bit each; EDIT_FLAT makes all but the constant coefficients zero.
+const uint EDIT_POSITIONS = 1u;
+const uint EDIT_SCALES = 2u;
+const uint EDIT_ROTATIONS = 4u;
+const uint EDIT_OPACITIES = 8u;
+const uint EDIT_COLOURS = 16u;
+const uint EDIT_FLAT = 32u;
 const uint PHI_QUINTIC = 0u;
 const uint PHI_CUBIC = 1u;
 const uint PHI_LOGISTIC = 2u;

@@ -53,9 +53,9 @@ pub use {ash, glam, gpu_allocator};
 
 #[cfg(feature = "bake")]
 pub use bake::{BakeCounts, BakeSettings, BakedGaussians, bake, bake_layer};
+pub use passes::{LayerEdit, SceneBuffers, SceneLayer, Staging};
 #[doc(hidden)]
 pub use passes::{Lines, PictureLine};
-pub use passes::{SceneBuffers, SceneLayer, Staging};
 pub use rara_base::error::{Error, Result};
 pub use rara_base::stats::{Counts, PassStatistics};
 #[doc(inline)]
@@ -70,9 +70,10 @@ pub use rara_scene::{
     ShFormat, Shape, Show, SortBy, Surface, TargetFormat, Training,
 };
 pub use renderer::{
-    ColorSpace, ConfiguredFrame, Cut, DepthDesc, ExpectedDepthDesc, FrameLimits, Kept, MotionDesc,
-    Outcome, Pick, PickTicket, Picker, Picks, PreparedFrame, Renderer, RendererDesc,
+    ColorSpace, ConfiguredFrame, Cut, DepthDesc, ExpectedDepthDesc, FrameLimits, Kept, LayerEditor,
+    MotionDesc, Outcome, Pick, PickTicket, Picker, Picks, PreparedFrame, Renderer, RendererDesc,
 };
 pub use session::{Headless, HeadlessDesc, StoredPicture};
 pub use stats::{FrameStats, PassTime, RasterChoice};
 pub use trace::Trace;
+pub use types::PlainGaussian;

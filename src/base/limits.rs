@@ -26,6 +26,8 @@ pub const MAX_SH_COEFFICIENTS: u32 = 16;
 pub const ALPHA_MIN: f32 = 1.0 / ALPHA_MIN_INVERSE;
 /// Gaussians of a block, one workgroup of clip, classify and compact; eight words of its bit masks.
 pub const BLOCK_SIZE: u32 = 256;
+/// How much farther than where single precision finds a splat's contour of 1/255 its block takes that to reach, a factor.
+pub const REACH_MARGIN: f32 = 1.0001;
 /// Blocks that a workgroup decides about at a time.
 pub const BLOCK_GROUP_SIZE: u32 = 64;
 /// Invocations that add up the counts of a row of runs of blocks. A list of blocks takes a single row on CPU drivers.

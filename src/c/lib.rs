@@ -25,6 +25,7 @@ pub mod clip;
 pub mod cut;
 pub mod depth;
 pub mod device;
+pub mod editor;
 pub mod frame;
 pub mod gaussians;
 mod handles;

@@ -30,7 +30,7 @@ pub struct RaraPickTicket {
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Default)]
 pub struct RaraPick {
-    /// Its Gaussian's number in the scene: that in its layer, behind all Gaussians of the layers before it. Layers that
+    /// Its Gaussian's number in the scene: that in its layer, behind the room of the layers before it. Layers that
     /// rara_gaussians_select has divided number as the set did where all of them are in the scene, else without those that are
     /// missing.
     pub number: u32,

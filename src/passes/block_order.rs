@@ -161,18 +161,15 @@ impl Splat {
         }
     }
 
-    /// Pixels a unit of the layer from which an antialiased splat keeps an [`opacity_spanning`](Self::opacity_spanning), whatever direction it is
+    /// Pixels a unit of the layer from which an antialiased splat keeps an [`opacity_spanning`], whatever direction it is
     /// seen from; infinite where none is enough, and zero of splats that are not antialiased. With the middle and the least
     /// deviation a and b and `x` the square of the scale, its opacity is multiplied by at least the root of
     /// `a²x / (a²x + L) · b²x / (b²x + L)` (glsl/block_view.glsl). That this is the share that is needed is a quadratic equation in x.
     fn spanning_scale(&self) -> f32 {
-        /// Single precision may find the opacity too small by this factor.
-        const MARGIN: f64 = 1.05;
         if !self.training.antialiased {
             return 0.0;
         }
-        let least = MARGIN * f64::from(self.opacity_spanning());
-        let share = (least / f64::from(self.opacity)).powi(2);
+        let share = (f64::from(least_opacity(self.training)) / f64::from(self.opacity)).powi(2);
         let mut deviations = self.scale.to_array();
         deviations.sort_unstable_by(f32::total_cmp);
         let [b, a, _] = deviations.map(|deviation| f64::from(deviation).powi(2));
@@ -189,22 +186,28 @@ impl Splat {
     /// How far from its centre a splat's contour of 1/255 can lie, the layer's units.
     fn reach(&self) -> f32 {
         let times = self.opacity * limits::ALPHA_MIN_INVERSE;
-        // This is a little more than single precision finds on the device.
-        let extent = 1.0001 * (2.0 * times.max(1.0).ln()).sqrt();
+        let extent = limits::REACH_MARGIN * (2.0 * times.max(1.0).ln()).sqrt();
         extent * self.scale.max_element()
     }
 
-    /// The opacity from which a splat's bounding box spans a pixel whatever the projection: half a pixel is then within the
-    /// contour of 1/255 of what has the low-pass alone for a variance. Single precision may find that a little smaller.
-    fn opacity_spanning(&self) -> f32 {
-        const MARGIN: f32 = 1.01;
-        let most = 0.5 * 0.5 / self.training.low_pass;
-        MARGIN * limits::ALPHA_MIN * (0.5 * MARGIN * most).exp()
-    }
-
     fn is_spanning(&self) -> bool {
-        self.opacity >= self.opacity_spanning()
+        self.opacity >= opacity_spanning(self.training)
     }
+}
+
+/// The opacity from which a splat's bounding box spans a pixel whatever the projection: half a pixel is then within the
+/// contour of 1/255 of what has the low-pass alone for a variance. Single precision may find that a little smaller.
+pub(super) fn opacity_spanning(training: Training) -> f32 {
+    const MARGIN: f32 = 1.01;
+    let most = 0.5 * 0.5 / training.low_pass;
+    MARGIN * limits::ALPHA_MIN * (0.5 * MARGIN * most).exp()
+}
+
+/// The opacity that making up for the low-pass has to leave of a splat so that it spans a pixel.
+pub(super) fn least_opacity(training: Training) -> f32 {
+    /// Single precision may find the opacity too small by this factor.
+    const MARGIN: f32 = 1.05;
+    MARGIN * opacity_spanning(training)
 }
 
 /// The bounds of nearly all centres, from a sample.

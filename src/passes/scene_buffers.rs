@@ -24,7 +24,8 @@ use rara_scene::precision::ShFormat;
 use rara_scene::{Gaussians, LayerState, Scene, check_clip, sh_coefficients};
 
 /// A scene's Gaussians in device memory. A clone shares that memory, and has states and clips of its layers of its own. Once the
-/// Gaussians of a layer were replaced, only the scene that they were replaced in can be drawn, and its later clones.
+/// Gaussians of a layer were replaced or [edited](crate::LayerEditor), only the scene in which they were can be drawn, and its
+/// later clones.
 #[derive(Debug, Clone)]
 pub struct SceneBuffers {
     /// No other contents of a scene of this process have it.
@@ -86,11 +87,11 @@ impl SceneBuffers {
         device.upload(&self.blocks, blocks, cast_slice(&layer.blocks))
     }
 
-    /// Replaces the Gaussians of a layer, of the number that it has in [`layers`](Self::layers), by as many or fewer than it has
-    /// room for ([`SceneLayer::room`]), and waits for it. That adds a layer which was uploaded empty with room
-    /// ([`Layer::with_room`](crate::Layer::with_room)), and removes one whose Gaussians are replaced by none. Nothing of the other layers is touched, and the layer keeps its
-    /// name, state and clip. A frame draws the same as with a scene that was uploaded with these Gaussians; their numbers
-    /// ([`Pick`](crate::Pick)) are the first ones of the layer.
+    /// Replaces the Gaussians of a layer, of the number that it has in [`layers`](Self::layers), by as many or fewer than it
+    /// has room for ([`SceneLayer::room`]), and waits for it. That adds a layer which was uploaded empty with room
+    /// ([`Layer::with_room`](crate::Layer::with_room)), and removes one whose Gaussians are replaced by none. Nothing of the
+    /// other layers is touched, and the layer keeps its name, state and clip. A frame draws the same as with a scene that was
+    /// uploaded with these Gaussians; their numbers ([`Pick`](crate::Pick)) are the first ones of the layer.
     ///
     /// The host has waited for all frames that show the scene. A frame that was configured before, and a [`Cut`](crate::Cut), are
     /// configured anew.
@@ -103,7 +104,7 @@ impl SceneBuffers {
         let device = self.gaussians.device().clone();
         let replaced = self.replaced(index, gaussians)?;
         let packed = self.packed(index, gaussians)?;
-        self.hold(index, replaced, &packed);
+        self.hold_replaced(index, replaced, &packed);
         self.write_layer(&device, &packed)
     }
 
@@ -135,7 +136,7 @@ impl SceneBuffers {
         packed.write(staging.bytes);
         // SAFETY: the caller vouches for `cmd`, and keeps the buffers alive until it has executed.
         unsafe { self.copy(cmd, staging.buffer, &[packed.copies(staging.offset)]) };
-        self.hold(index, replaced, &packed);
+        self.hold_replaced(index, replaced, &packed);
         Ok(())
     }
 
@@ -190,12 +191,12 @@ impl SceneBuffers {
     }
 
     /// How spherical harmonics are stored, and how many numbers there are of each Gaussian.
-    fn sh(&self) -> (ShFormat, usize) {
+    pub(super) fn sh(&self) -> (ShFormat, usize) {
         (self.sh_format, 3 * sh_coefficients(self.sh_degree))
     }
 
     /// Notes that the memory will hold a layer with other Gaussians.
-    fn hold(
+    fn hold_replaced(
         &mut self,
         index: usize,
         (layer, sample): (SceneLayer, PairSample),
@@ -203,6 +204,11 @@ impl SceneBuffers {
     ) {
         self.reordered |= !packed.numbers().is_sorted();
         self.sample = Arc::new(sample);
+        self.hold(index, layer);
+    }
+
+    /// Notes that the memory will hold other contents of a layer.
+    pub(super) fn hold(&mut self, index: usize, layer: SceneLayer) {
         self.layers[index] = layer;
         self.id = NEXT_ID.fetch_add(1, Ordering::Relaxed);
         self.held.store(self.id, Ordering::Relaxed);
@@ -253,7 +259,7 @@ impl SceneBuffers {
         Ok(())
     }
 
-    fn layer(&self, index: usize) -> Result<&SceneLayer> {
+    pub(super) fn layer(&self, index: usize) -> Result<&SceneLayer> {
         self.layers.get(index).ok_or_else(|| {
             let count = self.layers.len();
             Error::Invalid(format!(
@@ -276,7 +282,7 @@ impl SceneBuffers {
         }
         if self.held.load(Ordering::Relaxed) != self.id {
             return refuse(
-                "Gaussians of the scene were replaced in a clone, which shares its memory: clone that one anew",
+                "Gaussians of the scene were replaced or edited in a clone, which shares its memory: clone that one anew",
             );
         }
         Ok(())

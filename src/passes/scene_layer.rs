@@ -76,6 +76,16 @@ impl SceneLayer {
         }
     }
 
+    /// The same with its centres within a box.
+    pub(super) fn within(&self, bounds: Bounds) -> Self {
+        let corners = outward(bounds);
+        Self {
+            box_around: corners,
+            corners,
+            ..self.clone()
+        }
+    }
+
     /// The numbers of its Gaussians, if they follow each other.
     pub(super) fn numbers(&self) -> Result<Numbers<'static>> {
         let Some(first) = self.first_number else {
@@ -150,10 +160,29 @@ impl SceneLayer {
         self.room.div_ceil(limits::BLOCK_SIZE)
     }
 
+    /// The blocks that hold its Gaussians.
+    pub(super) fn filled_blocks(&self) -> u32 {
+        self.gaussians.div_ceil(limits::BLOCK_SIZE)
+    }
+
     /// The first block behind it.
     pub(super) fn block_end(&self) -> u32 {
         self.first_block + self.block_count()
     }
+}
+
+/// The corners of a box in single precision, no nearer to its middle than in double.
+fn outward(bounds: Bounds) -> [Vec3; 2] {
+    let (min, max) = (bounds.min.as_vec3(), bounds.max.as_vec3());
+    let low = [0, 1, 2].map(|axis| match f64::from(min[axis]) > bounds.min[axis] {
+        true => min[axis].next_down(),
+        false => min[axis],
+    });
+    let high = [0, 1, 2].map(|axis| match f64::from(max[axis]) < bounds.max[axis] {
+        true => max[axis].next_up(),
+        false => max[axis],
+    });
+    [low.into(), high.into()]
 }
 
 /// The number of the first layer of a name.

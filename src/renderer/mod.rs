@@ -17,6 +17,7 @@ mod choose;
 mod configure;
 mod cut;
 mod desc;
+mod editor;
 mod estimate;
 mod frame;
 mod frames;
@@ -37,6 +38,7 @@ mod working;
 
 pub use cut::Cut;
 pub use desc::{ColorSpace, DepthDesc, ExpectedDepthDesc, MotionDesc, RendererDesc};
+pub use editor::LayerEditor;
 pub use frame::{ConfiguredFrame, PreparedFrame};
 pub(crate) use frames::RecordedFrame;
 pub use limits::FrameLimits;

@@ -13,6 +13,7 @@ use rara_c::channels::*;
 use rara_c::clip::*;
 use rara_c::depth::*;
 use rara_c::device::*;
+use rara_c::editor::*;
 use rara_c::gaussians::*;
 use rara_c::layer::*;
 use rara_c::layer_info::*;

@@ -4,6 +4,7 @@ mod classic_host;
 mod depth;
 mod dispatches;
 mod dynamic_state;
+mod editing;
 mod embed;
 mod features;
 mod formats;

@@ -15,6 +15,7 @@ use crate::clip::*;
 use crate::cut::*;
 use crate::depth::*;
 use crate::device::*;
+use crate::editor::*;
 use crate::frame::*;
 use crate::gaussians::*;
 use crate::layer::*;

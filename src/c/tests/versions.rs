@@ -10,6 +10,7 @@ use crate::boundary::*;
 use crate::channels::*;
 use crate::depth::*;
 use crate::device::*;
+use crate::editor::*;
 use crate::layer::*;
 use crate::matrices::*;
 use crate::renderer_desc::*;

@@ -108,7 +108,7 @@ fn antialiased_splats_span_a_pixel_from_a_scale_on() {
             let camera = camera.expect("a view").fx(share * scale).fy(share * scale);
             let view = ViewTransform::<f64>::new(&camera);
             let opacity = Footprint::new(&scene, index, &view).map_or(0.0, |f| f.opacity);
-            let spans = opacity >= f64::from(Splat::of(&scene, index as u32).opacity_spanning());
+            let spans = opacity >= f64::from(opacity_spanning(scene.training()));
             assert!(
                 spans || share < 1.0,
                 "{index}: {opacity} at {scale} px a unit"

@@ -4,11 +4,15 @@ use std::cell::Cell;
 use std::ffi::CStr;
 use std::ptr::null;
 
+use super::channels::with_renderer;
 use super::ours::loaded_in_c;
 use super::staged::staging;
 use super::*;
 use crate::clips::clip_of;
+use crate::results::assert_fails;
 use rara::{Clip, Layer, LayerState};
+use rara_c::boundary::*;
+use rara_c::editor::*;
 use rara_c::layer::*;
 use rara_c::layer_info::*;
 
@@ -160,5 +164,70 @@ fn layers_are_the_same_bytes() {
             rara_scene_buffers_destroy(uploaded);
             rara_gaussians_destroy(gaussians[1]);
         }
+    });
+}
+
+#[test]
+fn an_edited_layer_is_the_same_bytes() {
+    with_both(2_300, |scene, lent, device, ours| {
+        let (first, count) = (300_u32, 700_u32);
+        let mut faded = scene.clone();
+        let range = first as usize..(first + count) as usize;
+        faded.opacities_mut()[range.clone()].fill(0.25);
+        let world = World::new(scene, Raster::Tiles);
+        let canvas = world.canvas(lent, device);
+        let before = world.drawn(device, &canvas);
+        let world = World {
+            layers: (&faded).into(),
+            ..world
+        };
+        let truth = world.drawn(device, &canvas);
+        assert!(truth != before, "the edit shows");
+        let plain = vec![
+            RaraPlainGaussian {
+                opacity: 0.25,
+                ..Default::default()
+            };
+            range.len()
+        ];
+        let size = size_of_val(&plain[..]);
+        let (memory, staging) = staging(device, size as u64);
+        let uploaded = ours.uploaded();
+        with_renderer(ours.device, |renderer| {
+            // SAFETY: the handles and the memory are alive until the frame has been waited for, and the structs may hold any bytes.
+            unsafe {
+                let from = plain.as_ptr().cast::<u8>();
+                staging
+                    .mapped
+                    .cast::<u8>()
+                    .copy_from_nonoverlapping(from, size);
+                let mut editor = null_mut();
+                let made = rara_layer_editor_create(renderer, uploaded, count, &mut editor);
+                assert_ok(made);
+                assert_eq!(rara_layer_editor_bytes(editor), size as u64);
+                let mut edit: RaraLayerEdit = std::mem::zeroed();
+                let edit_size = size_of_val(&edit);
+                assert_ok(rara_layer_edit_default(&mut edit, edit_size));
+                (edit.first, edit.opacities) = (first, vk::TRUE);
+                let drawn = world.drawn_in_c(ours.device, &canvas, |cmd| {
+                    let copy = vk::BufferCopy::default().src_offset(staging.offset);
+                    let copy = [copy.size(size as u64)];
+                    let buffer = rara_layer_editor_buffer(editor);
+                    let raw = device.raw();
+                    raw.cmd_copy_buffer(cmd, memory.handle(), buffer, &copy);
+                    let record = |count| {
+                        let edit = RaraLayerEdit { count, ..edit };
+                        rara_layer_editor_record(editor, cmd, uploaded, 0, &edit)
+                    };
+                    assert_fails(record(count + 1), RARA_ERROR_INVALID, "this one is for 700");
+                    assert_ok(record(count));
+                    uploaded
+                });
+                assert!(drawn == truth);
+                rara_layer_editor_destroy(editor);
+            }
+        });
+        // SAFETY: all frames were waited for.
+        unsafe { rara_scene_buffers_destroy(uploaded) };
     });
 }

@@ -18,7 +18,7 @@ macro_rules! spirv {
     }};
 }
 
-const fn words<const N: usize>(bytes: &[u8]) -> [u32; N] {
+pub(super) const fn words<const N: usize>(bytes: &[u8]) -> [u32; N] {
     let mut words = [0; N];
     let mut i = 0;
     while i < N {

@@ -144,7 +144,8 @@ impl SceneLayer {
         self.state.visible && self.state.opacity >= limits::ALPHA_MIN
     }
 
-    /// The box around all of its centres, in its own units; `None` without Gaussians.
+    /// The box around all of its centres, in its own units, or that of the last edit
+    /// ([`LayerEdit::bounds`](crate::LayerEdit::bounds)); `None` without Gaussians.
     pub fn bounds(&self) -> Option<Bounds> {
         let [min, max] = self.box_around.map(|corner| corner.as_dvec3());
         (self.gaussians > 0).then_some(Bounds { min, max })

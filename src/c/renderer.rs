@@ -1,5 +1,7 @@
 //! The renderer.
 
+use std::ffi::c_char;
+
 use rara::ash::vk;
 use rara::{Renderer, Result};
 
@@ -8,6 +10,7 @@ use crate::depth::RaraDepthMap;
 use crate::device::RaraDevice;
 use crate::handles::{alive, alone, create, destroy};
 use crate::renderer_desc::{RaraRendererDesc, renderer_desc};
+use crate::text::text;
 
 /// Draws scenes into the host's rendering scopes. Calls of several threads take turns.
 ///
@@ -49,6 +52,19 @@ pub unsafe extern "C" fn rara_renderer_create(
     create(renderer, "renderer", || {
         let device = alive(device, "device")?;
         Renderer::new(&device.0, renderer_desc(desc)?).map(RaraRenderer)
+    })
+}
+
+/// Names the renderer: its commands are under a debug label of that name, as far as 63 bytes go, which tells the eyes of a
+/// frame apart. An empty name takes the label away.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_renderer_set_name(
+    renderer: *mut RaraRenderer,
+    name: *const c_char,
+) -> RaraResult {
+    with(renderer, |renderer| {
+        renderer.set_name(text(name, "name")?);
+        Ok(())
     })
 }
 

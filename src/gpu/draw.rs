@@ -5,7 +5,7 @@
 use ash::vk;
 
 use super::device::Device;
-use super::label::{begin_pass, end_pass};
+use super::label::{begin_label, begin_pass, end_label, end_pass};
 use super::memory::Buffer;
 use super::pipeline::GraphicsPipeline;
 use super::timer::Timer;
@@ -41,6 +41,17 @@ impl<'a> Drawer<'a> {
         let result = record(self);
         // SAFETY: as above.
         unsafe { end_pass(self.device, self.cmd, self.timer.as_deref_mut(), timed) };
+        result
+    }
+
+    /// Records `record` under a debug label of a name, if there is one.
+    pub fn under<R>(&mut self, name: Option<&str>, record: impl FnOnce(&mut Self) -> R) -> R {
+        let Some(name) = name else {
+            return record(self);
+        };
+        begin_label(self.device, self.cmd, name);
+        let result = record(self);
+        end_label(self.device, self.cmd);
         result
     }
 

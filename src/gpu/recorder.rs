@@ -124,6 +124,14 @@ impl<'a> Recorder<'a> {
         result
     }
 
+    /// Records `record` under a debug label of a name, if there is one.
+    pub fn under<R>(&mut self, name: Option<&str>, record: impl FnOnce(&mut Self) -> R) -> R {
+        match name {
+            Some(name) => self.label(name, record),
+            None => record(self),
+        }
+    }
+
     /// Records `record` under a debug label, without timestamps, where it is no pass.
     pub fn label<R>(&mut self, name: &str, record: impl FnOnce(&mut Self) -> R) -> R {
         begin_label(self.device, self.cmd, name);

@@ -26,7 +26,8 @@ impl Sight {
     /// That of a camera in the space of a scene of these layers.
     pub(crate) fn new(layers: &[SceneLayer], camera: &Camera) -> Self {
         let seen = layers.iter().map(|layer| {
-            let placement = layer.placement();
+            // Whatever its Gaussians are relative to: others may have taken their place.
+            let placement = layer.state().placement;
             (camera.in_scene(&placement), placement.scale())
         });
         Self {

@@ -16,7 +16,8 @@ use rara_gpu::{Bindings, Buffer, BufferDesc, Device, Location, Recorder};
 ///
 /// It has a [buffer](Self::buffer) of [`PlainGaussian`]s, plain floats in the order of the Gaussians' numbers in the layer,
 /// which the host's shaders or copies write. [`record`](Self::record) then packs them to where the scene has them, and finds
-/// the bounds of their blocks anew. A frame draws the same as with a scene that was uploaded with these Gaussians.
+/// the bounds of their blocks anew. A frame draws the same as with a scene that was uploaded with these Gaussians,
+/// where the [bounds](LayerEdit::bounds) of the edit are theirs.
 ///
 /// ```no_run
 /// # use rara::{LayerEdit, LayerEditor, Renderer, Result, SceneBuffers, ash::vk};

@@ -127,6 +127,8 @@ pub struct Renderer {
     pending: Arc<()>,
     /// Where the layers of the last prepared frame have the camera, where motion is drawn.
     seen: Option<Sight>,
+    /// The label around its commands; none without one.
+    name: Option<Box<str>>,
     /// How splats become pixels, as the log was told last.
     noted: RasterChoice,
 }
@@ -210,6 +212,7 @@ impl Renderer {
             id: NEXT_ID.fetch_add(1, Ordering::Relaxed),
             pending: Arc::default(),
             seen: None,
+            name: None,
             noted: RasterChoice::default(),
         })
     }
@@ -219,6 +222,12 @@ impl Renderer {
     /// [`Clip::in_scene`](crate::Clip::in_scene) makes of one in the world. Without a call, the scene's space is the world.
     pub fn set_placement(&mut self, placement: Placement) {
         self.placement = placement;
+    }
+
+    /// Names the renderer: its commands are under a debug label of that name, as far as 63 bytes go, which tells the eyes of a
+    /// frame apart. An empty name takes the label away.
+    pub fn set_name(&mut self, name: &str) {
+        self.name = (!name.is_empty()).then(|| name.into());
     }
 
     /// Changes what the host's depth buffer holds for a depth, from the next [`configure`](Self::configure) on, for hosts

@@ -102,7 +102,9 @@ impl Renderer {
             let motions = seen.map(|now| now.motions(self.seen.as_ref()).collect());
             let motions: SmallVec<[_; FEW_LAYERS]> = motions.unwrap_or_default();
             let written = (&slot.counts, &motions[..]);
-            passes::record(plan, &mut recorder, resources, owns_cut, written);
+            recorder.under(self.name.as_deref(), |recorder| {
+                passes::record(plan, recorder, resources, owns_cut, written);
+            });
             self.keep(scene, &state);
         }
         self.seen.clone_from(&state.decision.sight);
@@ -160,12 +162,7 @@ impl Renderer {
         }
         let (map, targets) = (decision.depth_map, decision.targets);
         let pipelines = &state.pipelines;
-        let newest = self.frames.newest_mut();
-        let timer = newest.and_then(|frame| frame.timer.as_mut());
-        // SAFETY: the caller promises that `cmd` is recording inside a fitting rendering scope.
-        let mut drawer = unsafe { Drawer::new(&self.device, cmd, timer) };
-        drawer.pass("splat", |drawer| {
-            drawer.picture(origin, plan.size());
+        let pass = |drawer: &mut Drawer<'_>| {
             let frame = (plan, buffers);
             passes::splat::record(drawer, pipelines, frame, targets.colour, origin, map);
             if plan.is_tiled() {
@@ -178,7 +175,9 @@ impl Renderer {
                     composite(Part::WrittenDepth);
                 }
             }
-        });
+        };
+        // SAFETY: the caller promises that `cmd` is recording inside a fitting rendering scope.
+        unsafe { self.pass(cmd, "splat", (origin, plan.size()), pass) };
         Ok(())
     }
 
@@ -213,12 +212,7 @@ impl Renderer {
             return Ok(());
         };
         let pipelines = &state.pipelines;
-        let newest = self.frames.newest_mut();
-        let timer = newest.and_then(|frame| frame.timer.as_mut());
-        // SAFETY: the caller promises that `cmd` is recording inside a fitting rendering scope.
-        let mut drawer = unsafe { Drawer::new(&self.device, cmd, timer) };
-        drawer.pass("splat_depth", |drawer| {
-            drawer.picture(origin, plan.size());
+        let pass = |drawer: &mut Drawer<'_>| {
             let frame = (plan, buffers);
             let map = (decision.depth_map, decision.unit);
             passes::depth::record_draw(drawer, pipelines, frame, attachments, origin, map);
@@ -227,7 +221,9 @@ impl Renderer {
                 let depths = (composite::draw(plan, decision.targets, part), buffers);
                 composite::record(drawer, pipelines, depths, origin, map);
             }
-        });
+        };
+        // SAFETY: the caller promises that `cmd` is recording inside a fitting rendering scope.
+        unsafe { self.pass(cmd, "splat_depth", (origin, plan.size()), pass) };
         Ok(())
     }
 
@@ -267,12 +263,7 @@ impl Renderer {
         let Some(attachments) = attachments.filter(drawn) else {
             return Ok(());
         };
-        let newest = self.frames.newest_mut();
-        let timer = newest.and_then(|frame| frame.timer.as_mut());
-        // SAFETY: the caller promises that `cmd` is recording inside a fitting rendering scope.
-        let mut drawer = unsafe { Drawer::new(&self.device, cmd, timer) };
-        drawer.pass("splat_motion", |drawer| {
-            drawer.picture(origin, plan.size());
+        let pass = |drawer: &mut Drawer<'_>| {
             let frame = (plan, buffers);
             motion::record(
                 drawer,
@@ -281,8 +272,33 @@ impl Renderer {
                 attachments,
                 (origin, least_alpha),
             );
-        });
+        };
+        // SAFETY: the caller promises that `cmd` is recording inside a fitting rendering scope.
+        unsafe { self.pass(cmd, "splat_motion", (origin, plan.size()), pass) };
         Ok(())
+    }
+
+    /// Records a pass of draws into the picture of a camera, which has its upper left corner and its size in the attachment, px.
+    ///
+    /// # Safety
+    /// `cmd` is recording inside a rendering scope with the attachments of the pipelines.
+    unsafe fn pass(
+        &mut self,
+        cmd: vk::CommandBuffer,
+        name: &'static str,
+        (origin, size): ([f32; 2], [f32; 2]),
+        record: impl FnOnce(&mut Drawer<'_>),
+    ) {
+        let newest = self.frames.newest_mut();
+        let timer = newest.and_then(|frame| frame.timer.as_mut());
+        // SAFETY: the caller's promise.
+        let mut drawer = unsafe { Drawer::new(&self.device, cmd, timer) };
+        drawer.under(self.name.as_deref(), |drawer| {
+            drawer.pass(name, |drawer| {
+                drawer.picture(origin, size);
+                record(drawer);
+            });
+        });
     }
 
     /// What a frame is drawn with, if it is the last prepared one and `origin` a place.

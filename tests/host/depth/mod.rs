@@ -2,6 +2,7 @@
 //! every way of drawing, dynamic rendering and classic render passes, with one sample and several.
 
 mod expected;
+mod eyes;
 mod hidden;
 mod targets;
 mod written;

@@ -294,6 +294,7 @@ fn every_object_has_a_name_and_every_command_a_label() {
     let mut timed = std::collections::BTreeSet::new();
     for raster in rasters {
         let mut headless = on(&device).expect("a renderer");
+        headless.session.renderer.set_name("left eye");
         for offset in [0.0, 0.1, 0.2] {
             let scene = generate(Kind::General, 600, 1);
             let camera = Camera::frame(&Bounds::of(&scene), -DVec3::Y, 50.0, (24, 16));
@@ -324,7 +325,9 @@ fn every_object_has_a_name_and_every_command_a_label() {
             "{name}"
         );
     }
-    for name in ["frame", "counts", "upload", "target", "readback"] {
+    for name in [
+        "left eye", "frame", "counts", "upload", "target", "readback",
+    ] {
         assert!(labels.iter().any(|label| label == name), "{name}");
     }
     assert!(timed.iter().all(|name| stages.contains(name)), "{timed:?}");

@@ -106,13 +106,13 @@ struct LayerView {
     uint pad[3]; // unused
 };
 
-// How the pixels of a layer have moved since the frame before. A point that is seen in pixel x, y at depth z was seen before
-// where (x, y, 1) + (right, down, depth) is, less x, y and 1: each is the change of a row of the map from (x z, y z, z, 1) to the
-// pixel before times its depth. Of an orthographic camera it maps (x, y, z, 1), and depth does not change.
+// How a layer has moved since the frame before, as pixels see it. A point that is seen in pixel x, y at depth z was seen where the
+// rows of a map have taken (x z, y z, z, 1), px times depth and depth; of an orthographic camera (x, y, z, 1), px and 1. These are the
+// rows less those that change nothing, so that small ways keep their digits.
 struct LayerMotion {
-    vec4 right;
-    vec4 down;
-    vec4 depth;
+    vec4 right; // of x
+    vec4 down; // of y
+    vec4 depth; // of z; of an orthographic camera zero
 };
 
 // The Gaussians of a layer, and how visible they are.

@@ -1,4 +1,4 @@
-// What lies behind the pixels of the tiles' picture: words of each pixel, one part after the other, as far as a frame has it.
+// Behind the pixels of the tiles' picture lie further words of each pixel: the parts that a frame has, one after the other.
 #ifndef RARA_BEHIND
 #define RARA_BEHIND
 

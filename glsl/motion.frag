@@ -28,7 +28,7 @@ vec4 motion_of(uint splat) {
     float change = dot(motion.depth, point);
     float before = (is_orthographic() ? 1.0 : z) + change;
     vec2 way = vec2(dot(motion.right, point), dot(motion.down, point)) - pixel * change;
-    // What was behind the eye was in no pixel.
+    // A point that was behind the eye was in no pixel.
     return vec4(before > 0.0 ? way / before : vec2(0.0), layer_number, 1.0);
 }
 

@@ -169,7 +169,7 @@ void add(Seen splat, float here[ROWS], float alpha[ROWS], float weight[ROWS]) {
             && transmittance[row] - added <= EYE.tiles.written_transmittance) {
             written[row] = here[row];
         }
-        // Of equal ones the first counts, which is in front.
+        // The first of equal ones counts, which is in front.
         if (STRONGEST && added > most_added[row]) {
             most_added[row] = added;
             strongest[row] = seen_number;

@@ -276,7 +276,7 @@ const uint SH_BYTE = 2u;
 const uint SH_PACKED = 3u;
 // A packed scale's exponent 0 in a float's: scales are from 2^-15 to 2^16.
 const uint SH_EXPONENT_BIAS = 112u;
-// What an edit reads of plain Gaussians, a bit each; EDIT_FLAT makes all but the constant coefficients zero.
+// An edit reads these parts of plain Gaussians, a bit each; EDIT_FLAT makes all but the constant coefficients zero.
 const uint EDIT_POSITIONS = 1u;
 const uint EDIT_SCALES = 2u;
 const uint EDIT_ROTATIONS = 4u;

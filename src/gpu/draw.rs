@@ -5,7 +5,7 @@
 use ash::vk;
 
 use super::device::Device;
-use super::label::{begin_label, begin_pass, end_label, end_pass};
+use super::label::{begin_pass, end_pass, under};
 use super::memory::Buffer;
 use super::pipeline::GraphicsPipeline;
 use super::timer::Timer;
@@ -46,13 +46,7 @@ impl<'a> Drawer<'a> {
 
     /// Records `record` under a debug label of a name, if there is one.
     pub fn under<R>(&mut self, name: Option<&str>, record: impl FnOnce(&mut Self) -> R) -> R {
-        let Some(name) = name else {
-            return record(self);
-        };
-        begin_label(self.device, self.cmd, name);
-        let result = record(self);
-        end_label(self.device, self.cmd);
-        result
+        under(self, (self.device, self.cmd), name, record)
     }
 
     /// Sets viewport and scissor to a rectangle of the attachment.

@@ -36,6 +36,22 @@ pub(super) fn end_label(device: &Device, cmd: vk::CommandBuffer) {
     }
 }
 
+/// Records `record` with `by`, which records into a command buffer, under a debug label of a name, if there is one.
+pub(super) fn under<T, R>(
+    by: &mut T,
+    (device, cmd): (&Device, vk::CommandBuffer),
+    name: Option<&str>,
+    record: impl FnOnce(&mut T) -> R,
+) -> R {
+    let Some(name) = name else {
+        return record(by);
+    };
+    begin_label(device, cmd, name);
+    let result = record(by);
+    end_label(device, cmd);
+    result
+}
+
 /// Opens a pass, which is a debug label and an entry of the timer. Returns the entry for [`end_pass`], if it has one.
 ///
 /// # Safety

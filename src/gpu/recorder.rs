@@ -6,7 +6,7 @@ use smallvec::SmallVec;
 
 use super::access::Access;
 use super::device::Device;
-use super::label::{begin_label, begin_pass, end_label, end_pass};
+use super::label::{begin_pass, end_pass, under};
 use super::memory::Buffer;
 use super::pipeline::ComputePipeline;
 use super::shader::MAX_BUFFERS;
@@ -126,18 +126,12 @@ impl<'a> Recorder<'a> {
 
     /// Records `record` under a debug label of a name, if there is one.
     pub fn under<R>(&mut self, name: Option<&str>, record: impl FnOnce(&mut Self) -> R) -> R {
-        match name {
-            Some(name) => self.label(name, record),
-            None => record(self),
-        }
+        under(self, (self.device, self.cmd), name, record)
     }
 
     /// Records `record` under a debug label, without timestamps, where it is no pass.
     pub fn label<R>(&mut self, name: &str, record: impl FnOnce(&mut Self) -> R) -> R {
-        begin_label(self.device, self.cmd, name);
-        let result = record(self);
-        end_label(self.device, self.cmd);
-        result
+        self.under(Some(name), record)
     }
 
     /// Dispatches a compute shader. `buffers[i]` is the buffer of binding `i`; the barrier follows from the shader's

@@ -37,9 +37,9 @@ pub(crate) fn draw(plan: &EyePlan, targets: Targets, part: Part) -> Draw<composi
         linear: converts && targets.linear,
         stored: converts && !targets.linear,
         depths: matches!(part, Part::ExpectedDepth(_)),
-        // What lies behind the pixels concerns those who read it.
-        expected_depth: part != Part::Colours && plan.way.expects_depth,
-        written_depth: part != Part::Colours && plan.way.writes_depth,
+        // Of what lies behind the pixels, written depths begin where expected ones end.
+        expected_depth: part == Part::WrittenDepth && plan.way.expects_depth,
+        written_depth: false,
         strongest: false,
     };
     Draw::new([&composite::VERT, fragment], constants, attachments, depth)

@@ -132,6 +132,19 @@ fn write_frame(plan: &EyePlan, recorder: &mut Recorder<'_>, frame: &Buffer) {
     recorder.update(frame, 0, &constants);
 }
 
+/// Writes how the layers have moved since the frame before.
+fn write_motions(
+    recorder: &mut Recorder<'_>,
+    b: &Buffers<EyePlan>,
+    motions: impl Iterator<Item = LayerMotion>,
+) {
+    let mut constants = SmallVec::<[u8; FEW_LAYERS]>::new();
+    for motion in motions {
+        constants.extend_from_slice(bytes_of(&motion));
+    }
+    recorder.update(b.get(&tiles::MEMORY.motions), 0, &constants);
+}
+
 /// Records a cut by itself, for all eyes that will see it.
 pub(crate) fn record_cut(plan: &CutPlan, recorder: &mut Recorder<'_>, resources: CutResources<'_>) {
     recorder.label("cut", |r| write_cut(plan, r, resources.buffers));
@@ -139,13 +152,13 @@ pub(crate) fn record_cut(plan: &CutPlan, recorder: &mut Recorder<'_>, resources:
 }
 
 /// Records everything up to the draw. The frame's cut is recorded with it where that is its own. `readback` gets a copy of the
-/// counts for the host; `motions` are those of the layers, where they are drawn.
+/// counts for the host.
 pub(crate) fn record(
     plan: &EyePlan,
     recorder: &mut Recorder<'_>,
     resources: EyeResources<'_>,
     owns_cut: bool,
-    (readback, motions): (&Buffer, &[LayerMotion]),
+    readback: &Buffer,
 ) {
     let b = resources.buffers;
     let shared = &shared::MEMORY;
@@ -158,9 +171,10 @@ pub(crate) fn record(
             write_frame(plan, r, frame);
         });
     }
-    if plan.way.draws_motion {
-        let target = b.get(&tiles::MEMORY.motions);
-        recorder.label("motion", |r| r.update(target, 0, cast_slice(motions)));
+    if plan.way.draws_motion
+        && let [Some(now), before] = resources.sights
+    {
+        recorder.label("motion", |r| write_motions(r, b, now.motions(before)));
     }
     if owns_cut {
         record_stages(

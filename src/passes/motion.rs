@@ -23,7 +23,7 @@ pub(crate) struct Sight {
 }
 
 impl Sight {
-    /// That of a camera in the space of a scene of these layers.
+    /// Finds where these layers have a camera that is in the space of their scene.
     pub(crate) fn new(layers: &[SceneLayer], camera: &Camera) -> Self {
         let seen = layers.iter().map(|layer| {
             // Whatever its Gaussians are relative to: others may have taken their place.
@@ -53,7 +53,7 @@ pub(crate) fn draw(plan: &EyePlan, attachments: Attachments) -> Draw<motion::Pro
     let constants = motion::Constants {
         expected_depth: plan.way.expects_depth,
         written_depth: plan.way.writes_depth,
-        strongest: plan.way.draws_motion,
+        strongest: false, // nothing lies behind them
         layered: plan.cut.layers.layers().len() > 1,
     };
     let shaders = [&motion::VERT, &motion::FRAG];

@@ -5,6 +5,7 @@ use ash::vk;
 use crate::passes::buffers::Buffers;
 use crate::passes::cut_plan::CutPlan;
 use crate::passes::eye_plan::EyePlan;
+use crate::passes::motion::Sight;
 use crate::passes::pipelines::Pipelines;
 use crate::passes::scene_buffers::SceneBuffers;
 use crate::passes::storage::Storage;
@@ -85,6 +86,8 @@ pub(crate) struct EyeResources<'a> {
     pub(crate) buffers: &'a Buffers<EyePlan>,
     /// The rectangle of the host's depth under the picture, for tiles that it hides.
     pub(crate) copied: vk::Rect2D,
+    /// Where the layers have the camera and where they had it in the frame before, for motion.
+    pub(crate) sights: [Option<&'a Sight>; 2],
 }
 
 impl Resources<CutName> for CutResources<'_> {

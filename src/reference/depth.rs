@@ -180,20 +180,11 @@ pub fn expected<'a, T: Real>(
     clip: &Clip,
     settings: &Settings,
 ) -> Vec<[f64; 2]> {
-    let mut pixels = vec![[0.0; 2]; (camera.width * camera.height) as usize];
-    for_each_depth::<T>(
-        &scene.into(),
-        camera,
-        clip,
-        settings,
-        |at, alpha, (depth, _)| {
-            let [sum, coverage] = &mut pixels[at];
-            let part = (1.0 - *coverage) * alpha;
-            *sum += part * depth;
-            *coverage += part;
-        },
-    );
-    pixels
+    blended::<T, [f64; 2]>(&scene.into(), (camera, clip, settings), |pixel, part| {
+        let [sum, coverage] = pixel;
+        *sum += part.added * part.depth;
+        *coverage = part.coverage;
+    })
 }
 
 /// A picture of the depths of the splats with which the pixels reach an alpha, front to back; `None` where they stay below.
@@ -204,75 +195,49 @@ pub fn reaching<'a, T: Real>(
     settings: &Settings,
     least: f64,
 ) -> Vec<Option<f64>> {
-    let mut pixels = vec![(0.0, None); (camera.width * camera.height) as usize];
-    for_each_depth::<T>(
-        &scene.into(),
-        camera,
-        clip,
-        settings,
-        |at, alpha, (depth, _)| {
-            let (coverage, reached) = &mut pixels[at];
-            *coverage += (1.0 - *coverage) * alpha;
-            if *coverage >= least {
-                reached.get_or_insert(depth);
-            }
-        },
-    );
-    pixels.into_iter().map(|(_, reached)| reached).collect()
+    let look = (camera, clip, settings);
+    blended::<T, Option<f64>>(&scene.into(), look, |reached, part| {
+        if part.coverage >= least {
+            reached.get_or_insert(part.depth);
+        }
+    })
 }
 
-/// What the splat that adds most to a pixel's alpha has there.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Strongest {
-    /// What it adds.
-    pub added: f64,
-    /// Its depth.
-    pub depth: f64,
-    /// The number of its layer.
-    pub layer: usize,
-    /// The alpha of the whole pixel.
-    pub coverage: f64,
-}
-
-/// A picture of the splats that add most to their pixels' alpha.
+/// A picture of the splats that add most to their pixels' alpha. The coverage is that of the whole pixel.
 pub fn strongest<'a, T: Real>(
     scene: impl Into<Scene<'a>>,
     camera: &Camera,
     clip: &Clip,
     settings: &Settings,
-) -> Vec<Strongest> {
-    let mut pixels = vec![Strongest::default(); (camera.width * camera.height) as usize];
-    for_each_depth::<T>(
-        &scene.into(),
-        camera,
-        clip,
-        settings,
-        |at, alpha, (depth, layer)| {
-            let pixel = &mut pixels[at];
-            let added = (1.0 - pixel.coverage) * alpha;
-            let coverage = pixel.coverage + added;
-            if added > pixel.added {
-                *pixel = Strongest {
-                    added,
-                    depth,
-                    layer,
-                    coverage,
-                };
-            }
-            pixel.coverage = coverage;
-        },
-    );
-    pixels
+) -> Vec<SplatPart> {
+    blended::<T, SplatPart>(&scene.into(), (camera, clip, settings), |most, part| {
+        if part.added > most.added {
+            *most = part;
+        }
+        most.coverage = part.coverage;
+    })
 }
 
-/// Calls a function with the number of a pixel, and a splat's alpha there, its depth and its layer, for all splats front to back.
-fn for_each_depth<T: Real>(
+/// The part that a splat has in a pixel.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct SplatPart {
+    /// What it adds to the pixel's alpha.
+    pub added: f64,
+    /// The pixel's alpha with it.
+    pub coverage: f64,
+    /// Its depth there.
+    pub depth: f64,
+    /// The number of its layer.
+    pub layer: usize,
+}
+
+/// A picture whose pixels a function has made of the splats' parts in them, front to back.
+fn blended<T: Real, P: Clone + Default>(
     scene: &Scene<'_>,
-    camera: &Camera,
-    clip: &Clip,
-    settings: &Settings,
-    mut see: impl FnMut(usize, f64, (f64, usize)),
-) {
+    (camera, clip, settings): (&Camera, &Clip, &Settings),
+    mut blend: impl FnMut(&mut P, SplatPart),
+) -> Vec<P> {
+    let mut pixels = vec![(0.0, P::default()); (camera.width * camera.height) as usize];
     let layers = layer::layers(scene, camera, clip);
     let sides: Vec<_> = layers
         .iter()
@@ -305,10 +270,19 @@ fn for_each_depth<T: Real>(
                 };
                 let (dx, dy) = (offset(x, 0), offset(y, 1));
                 if let Some(alpha) = splat::alpha(splat, dx, dy, settings.decay_law()) {
-                    let at = (y * width + x) as usize;
-                    see(at, alpha.wide(), (depth.mean(dx, dy).wide(), layer));
+                    let (coverage, pixel) = &mut pixels[(y * width + x) as usize];
+                    let added = (1.0 - *coverage) * alpha.wide();
+                    *coverage += added;
+                    let part = SplatPart {
+                        added,
+                        coverage: *coverage,
+                        depth: depth.mean(dx, dy).wide(),
+                        layer,
+                    };
+                    blend(pixel, part);
                 }
             }
         }
     }
+    pixels.into_iter().map(|(_, pixel)| pixel).collect()
 }

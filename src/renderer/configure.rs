@@ -35,9 +35,10 @@ impl Renderer {
     ///
     /// # Errors
     /// [`Error::Invalid`] for what no frame can show, [`Error::Memory`] and [`Error::Budget`] where there is no room for it,
-    /// and [`Error::Device`] where the driver fails. [`Error::Memory`] also where only tiles show what is asked for, a frame before
-    /// [has shown nothing](Self::fell_back) for want of room, and no more can be made. [`Error::Invalid`] also for a cut that is not configured or is another
-    /// scene's, and for a cut with a camera that has near or far planes, which would cut as well.
+    /// and [`Error::Device`] where the driver fails. [`Error::Memory`] also where only tiles show what is asked for, a frame
+    /// before [has shown nothing](Self::fell_back) for want of room, and no more can be made. [`Error::Invalid`] also for a cut
+    /// that is not configured or is another scene's, and for a cut with a camera that has near or far planes, which would cut as
+    /// well.
     pub fn configure<'a>(
         &mut self,
         scene: &'a SceneBuffers,
@@ -328,8 +329,8 @@ impl Renderer {
     }
 
     /// Makes room for as many pairs of tile and splat as the frame before has shown to be needed, and as this one is expected
-    /// to have. Returns whether nothing is to be drawn of the next frame where that is not enough, and whether, after a frame in flight
-    /// for which it was not, it will not be, and no more can be made.
+    /// to have. Returns whether nothing is to be drawn of the next frame where that is not enough, and whether a frame in flight
+    /// had too little, no more can be made, and this one will have too little again.
     fn make_room(&mut self, request: &FrameRequest<'_>, tiles: u32) -> (bool, bool) {
         let undrawn = |frame: &RecordedFrame| {
             let redrawn = frame.decision.as_ref().is_some_and(|had| had.redrawn);
@@ -350,9 +351,7 @@ impl Renderer {
             let whole = request.whole.unwrap_or(request.camera);
             expected = self.estimate.update(request.scene, request.camera, whole);
         }
-        if !self.pairs.is_fixed() {
-            self.pairs.expect(expected);
-        }
+        self.pairs.expect(expected);
         let has_grown = self.pairs.room() > had;
         let lacks_room = fell_back && !has_grown && expected > self.pairs.room();
         match request.submission {

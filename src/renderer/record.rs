@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use ash::vk;
-use smallvec::SmallVec;
 
 use super::frame::{FrameCut, FrameState};
 use super::{ConfiguredFrame, MotionDesc, PreparedFrame, Renderer, out_of_order};
@@ -13,9 +12,6 @@ use crate::passes::{
 };
 use rara_base::error::Result;
 use rara_gpu::{DepthImage, Drawer, Recorder};
-
-/// Layers whose motion is recorded without memory of its own.
-const FEW_LAYERS: usize = 64;
 
 impl Renderer {
     /// Records a frame's stages up to the draw, outside any rendering scope. `depth` is what the host has drawn already, for a
@@ -97,13 +93,10 @@ impl Renderer {
                 },
                 buffers: &state.buffers,
                 copied: copied.unwrap_or_default(),
+                sights: [state.decision.sight.as_ref(), self.seen.as_ref()],
             };
-            let seen = state.decision.sight.as_ref();
-            let motions = seen.map(|now| now.motions(self.seen.as_ref()).collect());
-            let motions: SmallVec<[_; FEW_LAYERS]> = motions.unwrap_or_default();
-            let written = (&slot.counts, &motions[..]);
             recorder.under(self.name.as_deref(), |recorder| {
-                passes::record(plan, recorder, resources, owns_cut, written);
+                passes::record(plan, recorder, resources, owns_cut, &slot.counts);
             });
             self.keep(scene, &state);
         }

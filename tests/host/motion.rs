@@ -10,7 +10,7 @@ use rara::{
     Camera, Clip, ClipOp, DepthDesc, DepthMap, Gaussians, Layer, LayerState, Mode, MotionDesc,
     Placement, Projection, Raster, Renderer, RendererDesc, Scene, SceneBuffers, Settings, ShFormat,
 };
-use rara_reference::depth::{Strongest, strongest};
+use rara_reference::depth::{SplatPart, strongest};
 
 const SIZE: (u32, u32) = (189, 131);
 const FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
@@ -81,7 +81,7 @@ impl World {
     }
 
     /// What is to be found: where it was before, less where it is, for each pixel.
-    fn truth(&self, [before, now]: &[Moment; 2]) -> Vec<([f64; 2], Strongest)> {
+    fn truth(&self, [before, now]: &[Moment; 2]) -> Vec<([f64; 2], SplatPart)> {
         let (camera, scene) = (&now.camera, self.scene(now));
         let seen = strongest::<f64>(scene, camera, &self.clip, &self.settings);
         let ways = seen.into_iter().enumerate().map(|(at, seen)| {

@@ -1,4 +1,4 @@
-//! What an edit leaves in the scene's buffers: what an upload of the same numbers does.
+//! An edit leaves in the scene's buffers what an upload of the same numbers does.
 
 use bytemuck::{Pod, cast_slice, pod_collect_to_vec};
 use glam::{Quat, Vec3};

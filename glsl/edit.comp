@@ -22,8 +22,8 @@ struct Params {
 layout(local_size_x = BLOCK_SIZE) in;
 
 BUFFER(readonly, 0, PlainGaussian, plain)
-BUFFER(restrict, 1, Gaussian, gaussians)
-BUFFER(restrict, 2, uint, sh)
+BUFFER(, 1, Gaussian, gaussians)
+BUFFER(, 2, uint, sh)
 BUFFER(writeonly, 3, Block, blocks)
 #include "nearest_half.glsl"
 

@@ -15,7 +15,7 @@ shared uint places[BATCH_WORDS * HELD_STRIDE];
 
 void main() {
     uint number = LINEAR_GROUP;
-    if (number >= counts.at[0].batch_groups.w || counts.at[0].tiled == 0u) {
+    if (number >= counts.at[0].batch_groups.w || counts.at[0].has_room == 0u) {
         return;
     }
     Batch batch = batch_of(number);

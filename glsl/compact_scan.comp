@@ -54,7 +54,7 @@ void main() {
         counts.at[0].mesh_groups = groups(splats, MESH_GROUP_SIZE);
         // Where tiles are wanted, binning counts them.
         counts.at[0].pairs = 0u;
-        counts.at[0].tiled = 0u;
+        counts.at[0].has_room = 0u;
         counts.at[0].span_count_groups = uvec4(splats == 0u ? 0u : EYE.tiles.span_runs / SPAN_GROUP_SIZE, 1u, 1u, 0u);
         counts.at[0].span_groups = uvec4(0u);
         counts.at[0].part_groups = uvec4(0u);

@@ -3,7 +3,12 @@
 #define RARA_QUAD
 #include "footprint.glsl"
 #include "cut.glsl"
-#include "widened.glsl"
+
+// A little wider than exact: the fragment stage decides what is inside, and the quad must only not be too small.
+// Rasterisers may move its corners by half of the least precision that Vulkan allows them, 1/32 px.
+float widened(float half_side) {
+    return 1.001 * half_side + 0.04;
+}
 
 // The smallest rectangle around the contour q = extent^2. det comes as a sum of squares, so the thin axis of a needle
 // is right where a difference of eigenvalues would be noise.

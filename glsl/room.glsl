@@ -2,20 +2,19 @@
 // `counts` is declared.
 #ifndef RARA_ROOM
 #define RARA_ROOM
+#include "groups.glsl"
 
-// Returns whether tiles draw the splats. If not, the frame's quads are drawn instead. One invocation decides for the frame.
+// Returns whether each tile has a list of its own. If not, coarse lists are written instead. One invocation decides for the frame.
 bool decide_room(uint pairs) {
-    bool tiled = pairs <= EYE.room.pair_capacity;
+    bool has_room = pairs <= EYE.room.pair_capacity;
     uint strips = (tile_rows() + STRIP_ROWS - 1u) / STRIP_ROWS;
     uvec2 quads = (uvec2(EYE.tiles.tile_columns, tile_rows()) + QUAD_TILES - 1u) / QUAD_TILES;
     counts.at[0].pairs = pairs;
-    counts.at[0].tiled = tiled ? 1u : 0u;
-    counts.at[0].tile_groups = uvec4(tiled ? STRIP_ROWS * EYE.tiles.tile_columns : 0u, strips, 1u, 0u);
-    counts.at[0].composite = uvec4(6u * quads.x * quads.y, tiled ? 1u : 0u, 0u, 0u);
-    if (tiled || EYE.room.redrawn != 0u) {
-        counts.at[0].draw.y = 0u;
-    }
-    return tiled;
+    counts.at[0].has_room = has_room ? 1u : 0u;
+    counts.at[0].coarse_groups = groups(has_room ? 0u : counts.at[0].mesh_groups.w, COARSE_GROUP_SIZE);
+    counts.at[0].tile_groups = uvec4(STRIP_ROWS * EYE.tiles.tile_columns, strips, 1u, 0u);
+    counts.at[0].composite = uvec4(6u * quads.x * quads.y, 1u, 0u, 0u);
+    return has_room;
 }
 
 #endif

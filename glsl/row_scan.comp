@@ -3,11 +3,14 @@
 // A workgroup a row of tiles finds where the splats of each of its tiles begin, and lists the tiles that hold any: first those
 // that need no code for several surfaces, and from the list's end on the others. The first workgroup finds whether all pairs
 // have room.
+#include "coarse.glsl"
 #include "macro_tiles.glsl"
 #include "workgroup_sum.glsl"
-#include "groups.glsl"
 
 layout(local_size_x = RADIX_GROUP_SIZE) in;
+
+// True where tiles that need code for several surfaces are drawn by themselves. Without room that is all of them.
+layout(constant_id = 0) const bool SEVERAL = false;
 
 BUFFER(, 1, FrameCounts, counts)
 BUFFER(readonly, 2, uvec4, row_sums)
@@ -45,12 +48,16 @@ uint kind_of(uint marked_count) {
 
 void write_commands(uint pairs, uint filled, uint several) {
     // Where the macro-tiles' pairs had no room, it is known already how many are needed.
-    bool tiled = decide_room(max(pairs, counts.at[0].pairs));
+    if (!decide_room(max(pairs, counts.at[0].pairs))) {
+        filled = EYE.tiles.tile_count;
+        several = SEVERAL ? filled : 0u;
+    }
     tile_begins.at[EYE.tiles.tile_count] = pairs;
+    tile_begins.at[cell_side_place()] = 0u;
     tile_list.at[EYE.tiles.tile_count] = filled - several;
     tile_list.at[EYE.tiles.tile_count + 1u] = several;
-    counts.at[0].tile_groups = groups(tiled ? filled - several : 0u, 1u);
-    counts.at[0].several_tile_groups = groups(tiled ? several : 0u, 1u);
+    counts.at[0].tile_groups = groups(filled - several, 1u);
+    counts.at[0].several_tile_groups = groups(several, 1u);
 }
 
 void main() {

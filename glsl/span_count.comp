@@ -29,7 +29,7 @@ void main() {
     }
     uvec2 bounds = run_bounds(run, EYE.tiles.span_runs, counts.at[0].visible + counts.at[0].cutoff);
     uint found = 0u;
-    // Pairs beyond the room need no counting: quads are drawn, and the next frame has more room.
+    // Pairs beyond the room need no counting: the lists are coarse, and the next frame has more room.
     uint splats_ahead[AHEAD];
     uint ahead_x[AHEAD];
     for (uint i = bounds.x; i < bounds.y && found <= EYE.room.pair_capacity; i++) {

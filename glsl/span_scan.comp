@@ -1,11 +1,10 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // The second step of binning, one workgroup with an invocation for each row of tiles, finds where each run's spans of each
-// row begin, how many pairs of tile and splat there are, and whether there is room for them. If not, the frame's quads are
-// drawn instead.
+// row begin, how many pairs of tile and splat there are, and whether there is room for them. If not, coarse lists are written
+// instead.
 #include "bin.glsl"
 #include "capped_sum.glsl"
-#include "groups.glsl"
 
 const uint ROWS = 256u; // at a time
 layout(local_size_x = ROWS) in;
@@ -58,9 +57,9 @@ void main() {
     }
     if (local == 0u) {
         row_begins.at[rows] = begin;
-        bool tiled = decide_room(pairs);
-        counts.at[0].span_groups = tiled ? groups(EYE.tiles.span_runs, SPAN_GROUP_SIZE) : uvec4(0u);
-        counts.at[0].part_groups = tiled ? groups(rows * EYE.tiles.row_parts, ROW_GROUP_SIZE) : uvec4(0u);
-        counts.at[0].row_groups = tiled ? groups(rows, ROW_GROUP_SIZE) : uvec4(0u);
+        bool has_room = decide_room(pairs);
+        counts.at[0].span_groups = has_room ? groups(EYE.tiles.span_runs, SPAN_GROUP_SIZE) : uvec4(0u);
+        counts.at[0].part_groups = has_room ? groups(rows * EYE.tiles.row_parts, ROW_GROUP_SIZE) : uvec4(0u);
+        counts.at[0].row_groups = has_room ? groups(rows, ROW_GROUP_SIZE) : uvec4(0u);
     }
 }

@@ -12,7 +12,7 @@ layout(location = 3) flat out vec3 curvature;
 void main() {
     uint splat_index = splat_index_at(gl_InstanceIndex);
     Splat splat = splat_at(splat_index);
-    gl_Position = corner(splat, quad_of(splat_index, splat), gl_VertexIndex);
+    gl_Position = corner(splat, quads.at[splat_index], gl_VertexIndex);
     centre_conic = fragment_centre(splat);
     conic_cut = splat.conic_cut;
     colour_cut = splat.colour_cut;

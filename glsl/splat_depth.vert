@@ -15,7 +15,7 @@ layout(location = 5) flat out vec4 near;
 void main() {
     uint splat_index = splat_index_at(gl_InstanceIndex);
     Splat splat = splat_at(splat_index);
-    gl_Position = corner(splat, quad_of(splat_index, splat), gl_VertexIndex);
+    gl_Position = corner(splat, quads.at[splat_index], gl_VertexIndex);
     centre_conic = fragment_centre(splat);
     conic_cut = splat.conic_cut;
     slope_curvature = vec4(splat.colour_cut.w, splat.curvature_depth.xyz);

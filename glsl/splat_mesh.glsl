@@ -25,7 +25,7 @@ void main() {
     }
     uint splat_index = splat_index_at(begin + local);
     Splat splat = splat_at(splat_index);
-    Quad quad = quad_of(splat_index, splat);
+    Quad quad = quads.at[splat_index];
     for (uint i = 0u; i < 4u; i++) {
         gl_MeshVerticesEXT[4u * local + i].gl_Position = corner(splat, quad, i);
     }

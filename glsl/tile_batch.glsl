@@ -3,6 +3,35 @@
 #ifndef RARA_TILE_BATCH
 #define RARA_TILE_BATCH
 
+// A walk through the splats of the tile's cell.
+struct Cell {
+    uint words; // of bits; 0 where the tile has a list of its own
+    uint row_place; // where the bits of its row are,
+    uint column_place; // and of its column
+    uint next; // the word that is looked at next
+    uint left; // bits of the one before that are still to come
+};
+Cell cell = Cell(0u, 0u, 0u, 0u, 0u);
+
+// Where lists are coarse, the tile's is that of its cell, whose end shows when it is reached.
+void find_cell(uvec2 tile, inout uint begin, inout uint end) {
+    uint side = tile_begins.at[cell_side_place()];
+    if (side != 0u) {
+        uint words = tile_begins.at[cell_words_place()];
+        uvec2 at = tile / side;
+        uint rows = cell_counts(side).y;
+        uint bits = cell_bits_place(words);
+        cell = Cell(words, bits + at.y * words, bits + (rows + at.x) * words, 0u, 0u);
+        begin = 0u;
+        end = 1u << 31u;
+    }
+}
+
+// The bits of the cell's splats that a word holds.
+uint cell_word(uint word) {
+    return word < cell.words ? tile_splats.at[cell.row_place + word] & tile_splats.at[cell.column_place + word] : 0u;
+}
+
 #ifdef RARA_SUBGROUP
 
 #define BATCH gl_SubgroupSize
@@ -26,8 +55,8 @@ const uint AHEAD = 8u;
 uint ahead[AHEAD];
 float ahead_x[AHEAD];
 
-// The invocation's splat of a batch, and its centre's x.
-uint number_in_batch(uint begin, uint first, uint end, out float x) {
+// The invocation's splat of a batch of the tile's list, and its centre's x.
+uint number_in_list(uint begin, uint first, uint end, out float x) {
     uint batch = (first - begin) / BATCH % AHEAD;
     if (batch == 0u) {
         for (uint k = 0u; k < AHEAD; k++) {
@@ -39,6 +68,28 @@ uint number_in_batch(uint begin, uint first, uint end, out float x) {
     }
     x = ahead_x[batch];
     return ahead[batch];
+}
+
+uint own_word;
+
+// Each invocation asks for one of the next words of the cell. Returns whether there is a bit in any.
+bool share_words() {
+    own_word = cell_word(cell.next + IN_BATCH);
+    return !all_of(own_word == 0u);
+}
+
+uint shared_word(uint i) {
+    return OF(i, own_word);
+}
+
+uint mine_number;
+
+void hand_over_number(uint number) {
+    mine_number = number;
+}
+
+uint number_taken_over(uint i) {
+    return OF(i, mine_number);
 }
 
 Seen mine;
@@ -127,10 +178,34 @@ bool all_done() {
 #define IN_BATCH gl_LocalInvocationIndex
 const bool WHOLE_ALONE = false; // it would be the same code twice
 
-uint number_in_batch(uint, uint first, uint end, out float x) {
+uint number_in_list(uint, uint first, uint end, out float x) {
     uint number = tile_splats.at[min(first + IN_BATCH, end - 1u)];
     x = SPLAT_CENTRE(number).x;
     return number;
+}
+
+shared uint words[TILE_WIDTH * TILE_HEIGHT];
+
+bool share_words() {
+    barrier();
+    words[IN_BATCH] = cell_word(cell.next + IN_BATCH);
+    barrier();
+    return true;
+}
+
+uint shared_word(uint i) {
+    return words[i];
+}
+
+shared uint batch_numbers[STRONGEST ? TILE_WIDTH * TILE_HEIGHT : 1u];
+
+// This comes before hand_over, whose barrier is for both.
+void hand_over_number(uint number) {
+    batch_numbers[IN_BATCH] = number;
+}
+
+uint number_taken_over(uint i) {
+    return batch_numbers[i];
 }
 
 shared Seen batch[TILE_WIDTH * TILE_HEIGHT];
@@ -182,5 +257,29 @@ bool all_done() {
 }
 
 #endif
+
+// The invocation's splat of a batch of the cell's, and its centre's x. All invocations go through the same bits, of which each
+// keeps one. The last batch, which is not full, says where the list ends.
+uint number_in_cell(uint first, inout uint end, out float x) {
+    uint own = 0u; // by depth
+    uint count = 0u;
+    while (count < BATCH && (cell.left != 0u || cell.next < cell.words)) {
+        if (cell.left != 0u) {
+            uint bit = uint(findLSB(cell.left));
+            cell.left &= cell.left - 1u;
+            own = count == IN_BATCH ? 32u * (cell.next - 1u) + bit : own;
+            count++;
+        } else if (cell.next % BATCH != 0u || share_words()) {
+            cell.left = shared_word(cell.next % BATCH);
+            cell.next++;
+        } else {
+            cell.next += BATCH;
+        }
+    }
+    end = count < BATCH ? first + count : end;
+    uint number = tile_splats.at[own];
+    x = SPLAT_CENTRE(number).x;
+    return number;
+}
 
 #endif

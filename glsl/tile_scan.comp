@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // The fifth step of binning, one invocation a row of tiles, finds where the splats of each tile begin, and those of each
 // part in it.
+#include "coarse.glsl"
 #include "rows.glsl"
 
 layout(local_size_x = ROW_GROUP_SIZE) in;
@@ -27,5 +28,6 @@ void main() {
     }
     if (row + 1u == tile_rows()) {
         tile_begins.at[EYE.tiles.tile_count] = place;
+        tile_begins.at[cell_side_place()] = 0u;
     }
 }

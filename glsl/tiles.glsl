@@ -30,6 +30,7 @@ layout(constant_id = 9) const uint SHOW = SHOW_COLOUR; // SHOW_*
 // the others, and behind all of them how many each list has.
 layout(constant_id = 11) const bool LISTED = false;
 #include "behind.glsl"
+#include "coarse.glsl"
 const bool FINDS_DEPTH = EXPECTED_DEPTH || WRITTEN_DEPTH;
 
 BUFFER(readonly, 1, vec4, splats)
@@ -276,6 +277,7 @@ void main() {
     if (begin == end) {
         return; // nothing reads its pixels
     }
+    find_cell(tile_at, begin, end);
     uvec2 size = uvec2(VIEW.size.xy);
     uvec2 pixel = tile_at * uvec2(TILE_WIDTH, TILE_HEIGHT) + gl_LocalInvocationID.xy * uvec2(1u, ROWS);
     pixel_centre = vec2(pixel) + 0.5;
@@ -302,7 +304,7 @@ void main() {
     }
     for (uint first = begin; first < end && !all_done(); first += BATCH) {
         float x;
-        uint number = number_in_batch(begin, first, end, x);
+        uint number = cell.words == 0u ? number_in_list(begin, first, end, x) : number_in_cell(first, end, x);
         Record record;
         Seen own = load(number, x, tile_middle, record);
         if (FINDS_DEPTH) {
@@ -311,6 +313,9 @@ void main() {
                 own.linear.x = Z_BOUNDED;
             }
             hand_over_depth(depth);
+        }
+        if (STRONGEST) {
+            hand_over_number(number);
         }
         hand_over(own, record);
         uint count = min(end - first, BATCH);
@@ -321,7 +326,7 @@ void main() {
                 seen_depth.mean = mean_depth_taken_over(i);
             }
             if (STRONGEST) {
-                seen_number = tile_splats.at[first + i];
+                seen_number = number_taken_over(i);
             }
             vec2 delta = pixel_centre - splat.centre_conic.xy;
             if (WHOLE_ALONE && splat.linear.x == Z_WHOLE) {

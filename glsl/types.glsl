@@ -63,10 +63,10 @@ struct TilesData {
     uint pad; // unused
 };
 
-// How much there is room for, and what happens where that is too little. No pixel depends on it.
+// How much there is room for. No pixel depends on it.
 struct RoomData {
     uint pair_capacity; // pairs of tile and splat that there is room for
-    uint redrawn; // 1: a frame whose pairs have no room is drawn again, so that nothing is drawn of it
+    uint cell_side; // tiles along a side of the cells of coarse lists, which take the place of the tiles' lists without room
     uint pad[2]; // unused
 };
 
@@ -227,9 +227,10 @@ struct FrameCounts {
     uvec4 batch_groups; // indirect dispatch of the batches of splats of a macro-tile
     uvec4 tile_groups; // indirect dispatch of the tiles; with the pipelines for GPUs but for those of several_tile_groups
     uvec4 several_tile_groups; // indirect dispatch of the tiles in which several surfaces cut a splat
+    uvec4 coarse_groups; // indirect dispatch over the splats of coarse lists; none where the tiles' lists have room
     uvec4 composite; // indirect draw of the tiles' picture
     uint pairs; // pairs of tile and splat; those of macro-tile and splat where already these have no room
-    uint tiled; // 1: the pairs have room, and tiles draw the splats
+    uint has_room; // 1: the pairs have room; 0: the lists are coarse
     uint sort_base; // what the sort counts the splats' keys from
     uint sort_skipped; // passes of the sort, from the first, that their keys do without
     uint macro_pairs; // pairs of macro-tile and splat that have room; some of them may hold no tile

@@ -93,6 +93,10 @@ pub const MACRO_TILES: u32 = MACRO_COLUMNS * MACRO_ROWS;
 pub const MACRO_RANGE_GROUP_SIZE: u32 = 64;
 /// Most splats of a macro-tile that a workgroup lists the tiles of: a batch.
 pub const BATCH_SPLATS: u32 = 512;
+/// Consecutive splats of a workgroup that writes coarse lists, 32 for each word of their bits.
+pub const COARSE_GROUP_SIZE: u32 = 256;
+/// The most rows and columns of cells of coarse lists together: a workgroup holds the bits of its splats in 8 KiB.
+pub const MOST_CELLS: u32 = 256;
 /// Workgroup size of the spans of tiles, of which one invocation owns a run of consecutive splats.
 pub const SPAN_GROUP_SIZE: u32 = 64;
 /// Workgroup size where an invocation owns a row of tiles or a part of its spans: small, since rows hold unequal numbers.

@@ -88,7 +88,7 @@ pub struct RaraDepthDesc {
     pub map: RaraDepthMap,
     /// The alpha, above 0 and at most 1, from which rara_renderer_draw writes a pixel's depth, so that what the host draws later
     /// meets the splats: the depth of the splat with which the pixel reaches it. It needs readable, tiles and an attachment that
-    /// can be written; a frame whose tiles have no room writes none. Default: 0, which writes none.
+    /// can be written. Default: 0, which writes none.
     pub write_alpha: f32,
 }
 

@@ -157,34 +157,27 @@ fn rect(x: i32, y: i32, width: u32, height: u32) -> vk::Rect2D {
     }
 }
 
-/// Writes the answer to a request: a pick for each pixel of the rectangle, row by row from the upper left. `*answered` is
-/// VK_TRUE then. It is VK_FALSE, and nothing is written, where there was no room for what the pixels show, for which later
-/// requests make it.
+/// Writes the answer to a request: a pick for each pixel of the rectangle, row by row from the upper left.
 /// RARA_ERROR_INVALID for another picker's request, for one whose memory a later one has taken, and where `pick_count` is not
 /// the number of pixels.
 ///
 /// # Safety
 /// `picker` is alive, and no other thread changes it; the submission in which the request was recorded has finished; `picks`
-/// has room for `pick_count`; `answered` may be overwritten.
+/// has room for `pick_count`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_picker_read(
     picker: *const RaraPicker,
     ticket: RaraPickTicket,
     picks: *mut RaraPick,
     pick_count: usize,
-    answered: *mut vk::Bool32,
 ) -> RaraResult {
     guard(|| {
-        let answered = exclusive(answered, "answered")?;
-        *answered = vk::FALSE;
         let picker = alive(picker, "picker")?;
         if picks.is_null() {
             return invalid("picks is null");
         }
         let ticket = PickTicket::of_numbers([ticket.picker, ticket.request]);
-        let Some(found) = picker.0.read(ticket)? else {
-            return Ok(());
-        };
+        let found = picker.0.read(ticket)?;
         if found.pixels.len() != pick_count {
             return invalid(format!(
                 "pick_count is {pick_count}, and the rectangle has {} pixels",
@@ -199,7 +192,6 @@ pub unsafe extern "C" fn rara_picker_read(
             });
             picks.add(at).write_unaligned(pick);
         }
-        *answered = vk::TRUE;
         Ok(())
     })
 }

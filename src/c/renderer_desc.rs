@@ -45,7 +45,7 @@ pub type RaraColorSpace = u32;
 pub const RARA_COLOR_SPACE_STORED: RaraColorSpace = 0;
 /// The attachment has linear light, as in a host that lights in HDR. Splats are blended as stored; the resulting picture is
 /// converted to linear light once and blended over the host's pixels. Only tiles do so: another raster is refused, and so is a
-/// depth that is not readable. A frame whose tiles have no room draws nothing, as RaraFrameStats::fell_back says.
+/// depth that is not readable.
 pub const RARA_COLOR_SPACE_LINEAR: RaraColorSpace = 1;
 
 /// The description of a renderer to be created.

@@ -37,7 +37,7 @@ pub struct RaraFrameLimits {
     pub planes: u32,
     /// Surfaces of a RaraClip that bends or combines. Default: 0, for none.
     pub surfaces: u32,
-    /// Pairs of tile and splat, for which there is then exactly this room: a frame with more is drawn as quads, the same
+    /// Pairs of tile and splat, for which there is then exactly this room: a frame with more has coarse lists, the same
     /// picture but slower, and RaraFrameStats::fell_back says so. rara_scene_buffers_estimated_pairs tells a camera's.
     /// Default: 0, for the usual room, 2 a Gaussian and 64 a tile of 8x8 pixels, which grows and allocates where a frame needs
     /// more.

@@ -51,8 +51,8 @@ pub struct RaraFrameStats {
     pub raster: RaraRaster,
     /// Why splats became pixels in that way.
     pub raster_reason: [c_char; RARA_REASON_SIZE],
-    /// True when tiles had no room for their lists, so that the frame was drawn as quads, which is slower and gives the
-    /// same picture; of RARA_SHOW_COUNT and RARA_SHOW_MEAN nothing was drawn. The next rara_renderer_configure makes the room.
+    /// True when tiles had no room for their lists, so that they looked for their splats in coarse ones, which is slower and
+    /// gives the same picture. The next rara_renderer_configure makes the room.
     pub fell_back: vk::Bool32,
     /// Number of passes; 0 without RaraRendererDesc's timing.
     pub pass_count: u32,

@@ -42,7 +42,6 @@ fn record(recording: &mut Recording<'_, '_, EyePlan>) {
 pub(crate) fn draw(plan: &EyePlan, attachments: Attachments) -> Draw<splat_depth::Program> {
     let weight = Weight::from_plan(plan);
     let constants = splat_depth::Constants {
-        boxes: !plan.needs_quads(),
         clip_mode: weight.mode,
         several: weight.several,
         combined: weight.combined,

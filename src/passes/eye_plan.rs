@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use ash::vk;
 
+use crate::passes::bin::lists;
 use crate::passes::cut_plan::{CutPlan, SceneFacts};
 use crate::passes::depth_keys::DepthKeys;
 use crate::passes::laws::Laws;
@@ -82,8 +83,6 @@ pub(crate) struct EyeFacts<'a> {
     pub(crate) picture: Option<TilePixels>,
     /// The number of pairs of tile and splat that have room.
     pub(crate) pair_capacity: u32,
-    /// True when a frame without room for its pairs is drawn again, instead of as quads.
-    pub(crate) redrawn: bool,
     /// The depth that hides splats of tiles, if they are wanted.
     pub(crate) occluders: Option<Occluders>,
     /// True when the pixels' expected depths are wanted.
@@ -129,6 +128,7 @@ impl EyePlan {
         let is_tiled = eye.raster == Raster::Tiles;
         let occluders = eye.occluders.filter(|_| is_tiled);
         let write_alpha = eye.write_alpha.filter(|_| is_tiled);
+        let tiles = tiles_data(size, eye.span_runs);
         Ok(Self {
             work: Work::Whole,
             way: Way {
@@ -171,11 +171,15 @@ impl EyePlan {
                     // Pixels that are saturated do not fall any further.
                     written_transmittance: write_alpha
                         .map_or(-1.0, |alpha| (1.0 - alpha).max(transmittance_min)),
-                    ..tiles_data(size, eye.span_runs)
+                    ..tiles
                 },
                 room: RoomData {
                     pair_capacity: eye.pair_capacity,
-                    redrawn: eye.redrawn.into(),
+                    cell_side: lists::cell_side(
+                        cut.gaussians(),
+                        [tiles.tile_columns, tiles.tile_count / tiles.tile_columns],
+                        eye.pair_capacity,
+                    ),
                     pad: [0; 2],
                 },
                 weight: weight_data(&cut, settings, beam_switch)?,
@@ -251,8 +255,7 @@ impl EyePlan {
         self.is_tiled() && self.cut.shape != DeviceShape::Cpu
     }
 
-    /// True when the quads of the splats have to be found. Where tiles' lists have no room, quads are drawn too, but boxes that
-    /// nobody has to find before.
+    /// True when the quads of the splats have to be found.
     pub(crate) fn needs_quads(&self) -> bool {
         !self.is_tiled()
     }

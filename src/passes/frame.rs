@@ -243,10 +243,10 @@ impl EyePlan {
         self.cut.pipelines(need);
         record_stages(&mut Recording::dry(self, need), &OF_EYE);
         if self.is_drawn {
-            need(splat::draw(self, targets.colour).key());
-        }
-        if self.is_drawn && self.is_tiled() {
-            need(composite::draw(self, targets, Part::Colours).key());
+            need(match self.is_tiled() {
+                true => composite::draw(self, targets, Part::Colours).key(),
+                false => splat::draw(self, targets.colour).key(),
+            });
         }
         if self.way.writes_depth {
             need(composite::draw(self, targets, Part::WrittenDepth).key());
@@ -255,10 +255,10 @@ impl EyePlan {
             need(motion::draw(self, attachments).key());
         }
         if let Some(attachments) = targets.expected_depth {
-            need(depth::draw(self, attachments).key());
-            if self.is_tiled() {
-                need(composite::draw(self, targets, Part::ExpectedDepth(attachments)).key());
-            }
+            need(match self.is_tiled() {
+                true => composite::draw(self, targets, Part::ExpectedDepth(attachments)).key(),
+                false => depth::draw(self, attachments).key(),
+            });
         }
     }
 

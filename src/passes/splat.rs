@@ -35,7 +35,6 @@ pub(crate) fn draw(plan: &EyePlan, attachments: Attachments) -> Draw<splat::Prog
         miss: weight.miss,
         phi_form: weight.phi,
         depth: attachments.depth.is_some(),
-        boxes: !plan.needs_quads(),
         show: weight::show_code(plan.way.show),
     };
     Draw::new(shaders, constants, attachments, DepthUse::Tested)

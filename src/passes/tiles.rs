@@ -1,6 +1,6 @@
 //! Stage `tiles`, the tile rasteriser: a compute shader blends the splats of each tile of pixels, front to back, until the
 //! tile is saturated. [`composite`](super::composite) blends their picture onto what the host has drawn; where nothing lies
-//! below, theirs is the picture. A frame whose pairs have no room is drawn as quads instead.
+//! below, theirs is the picture.
 
 use crate::passes::bin::{lists, macro_tiles};
 use crate::passes::buffers::Buffers;
@@ -62,6 +62,11 @@ enum List {
     Several,
 }
 
+/// True when those in which several surfaces cut a splat are drawn by themselves.
+pub(super) fn has_two_lists(plan: &EyePlan) -> bool {
+    drawn_lists(plan).len() > 1
+}
+
 /// The lists that a frame draws.
 fn drawn_lists(plan: &EyePlan) -> &'static [List] {
     match plan.cut.shape {
@@ -78,7 +83,7 @@ fn drawn_lists(plan: &EyePlan) -> &'static [List] {
 
 fn pipeline(plan: &EyePlan, list: List) -> Pipeline<tiles::Program> {
     let weight = Weight::from_plan(plan);
-    let is_one_of_two = list == List::Few && drawn_lists(plan).len() > 1;
+    let is_one_of_two = list == List::Few && has_two_lists(plan);
     let work = plan.tile_work;
     let constants = tiles::Constants {
         clip_mode: weight.mode,

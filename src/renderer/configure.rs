@@ -7,9 +7,7 @@ use ash::vk;
 use super::choose;
 use super::desc::ColorSpace;
 use super::frame::{FrameCut, FrameState};
-use super::frames::{Decision, RecordedFrame};
-use super::outcome::{Outcome, Submission};
-use super::pair_room::Retry;
+use super::frames::Decision;
 use super::request::{FrameRequest, Kept};
 use super::{ConfiguredFrame, Renderer, out_of_order};
 use crate::passes::{
@@ -35,10 +33,8 @@ impl Renderer {
     ///
     /// # Errors
     /// [`Error::Invalid`] for what no frame can show, [`Error::Memory`] and [`Error::Budget`] where there is no room for it,
-    /// and [`Error::Device`] where the driver fails. [`Error::Memory`] also where only tiles show what is asked for, a frame
-    /// before [has shown nothing](Self::fell_back) for want of room, and no more can be made. [`Error::Invalid`] also for a cut
-    /// that is not configured or is another scene's, and for a cut with a camera that has near or far planes, which would cut as
-    /// well.
+    /// and [`Error::Device`] where the driver fails. [`Error::Invalid`] also for a cut that is not configured or is another
+    /// scene's, and for a cut with a camera that has near or far planes, which would cut as well.
     pub fn configure<'a>(
         &mut self,
         scene: &'a SceneBuffers,
@@ -131,14 +127,10 @@ impl Renderer {
         self.memory.free_finished(finished);
         self.cut.memory.free_finished(finished);
         let tiles = tiles_of(request.camera.width, request.camera.height);
-        // Where no quads can take the tiles' place, nothing does.
         let targets = self.targets(request.draws_linear());
-        let needs_tiles = needs_tiles(request.settings, &targets);
-        let (redrawn, lacks_room) = self.make_room(request, tiles);
-        let redrawn = redrawn || needs_tiles;
+        self.make_room(request, tiles);
         let (raster, reason) = self.choose_raster(request.settings, tiles, &targets)?;
-        // Quads, which have to be drawn, take the tiles' place only in a frame that is not redrawn.
-        let leaves_picture = raster == Raster::Tiles && redrawn && scene.count > 0;
+        let leaves_picture = raster == Raster::Tiles && scene.count > 0;
         let picture = request
             .picture
             .filter(|_| leaves_picture)
@@ -151,7 +143,6 @@ impl Renderer {
         let eye = EyeFacts {
             picture,
             pair_capacity: self.pairs.room(),
-            redrawn,
             whole: request.whole,
             colours: request.colours,
             ..self.facts(scene.count, raster, depth_map)
@@ -178,38 +169,20 @@ impl Renderer {
             depth_map,
             unit: self.placement.scale(),
             sight: self.desc.motion.map(|_| Sight::new(facts.layers, camera)),
-            redrawn,
-            needs_tiles,
-            lacks_room,
             is_first_use: false,
         })
     }
 
     /// Decides what a frame computes, and makes the memory for it. Where the device has none for its lists of tiles, it
-    /// has shorter ones or is drawn as quads.
+    /// has shorter ones.
     fn decide_with_memory(&mut self, request: &FrameRequest<'_>) -> Result<Decision> {
-        let mut settings = *request.settings;
         loop {
-            let mut decision = self.decide(&FrameRequest {
-                settings: &settings,
-                ..*request
-            })?;
-            if decision.needs_tiles && decision.lacks_room {
-                return Err(Outcome::no_room(request.settings));
-            }
-            if settings.raster != request.settings.raster {
-                decision.reason = "the device has no memory for the tiles' lists";
-            }
+            let decision = self.decide(request)?;
             let Err(error) = self.make_memory(request, &decision.plan) else {
                 return Ok(decision);
             };
-            let has_lists = decision.plan.is_tiled();
-            let can_be_quads = !decision.needs_tiles && !self.draws_beside();
             let budget = self.device.memory_budget();
-            match self.pairs.retry(error, budget, has_lists, can_be_quads)? {
-                Retry::Smaller => {}
-                Retry::Quads => settings.raster = Raster::Quad,
-            }
+            self.pairs.retry(error, budget, decision.plan.is_tiled())?;
         }
     }
 
@@ -316,7 +289,6 @@ impl Renderer {
             tile_work: TileWork::suiting(shape, self.device.support().subgroup_size),
             picture: None,
             pair_capacity: 0,
-            redrawn: false,
             occluders: readable
                 .zip(depth_map)
                 .map(|(depth, map)| Occluders::new(depth.format, map)),
@@ -329,35 +301,16 @@ impl Renderer {
     }
 
     /// Makes room for as many pairs of tile and splat as the frame before has shown to be needed, and as this one is expected
-    /// to have. Returns whether nothing is to be drawn of the next frame where that is not enough, and whether a frame in flight
-    /// had too little, no more can be made, and this one will have too little again.
-    fn make_room(&mut self, request: &FrameRequest<'_>, tiles: u32) -> (bool, bool) {
-        let undrawn = |frame: &RecordedFrame| {
-            let redrawn = frame.decision.as_ref().is_some_and(|had| had.redrawn);
-            redrawn && frame.fell_back()
-        };
-        if self.previous.is_some() && self.frames.newest().is_some_and(undrawn) {
-            self.previous = None; // the frame before was not drawn
-        }
-        let (fell_back, needed) = self.frames.awaited(request.submission);
-        let budget = self.device.memory_budget();
-        let had = self.pairs.room();
-        self.pairs.review(budget);
+    /// to have.
+    fn make_room(&mut self, request: &FrameRequest<'_>, tiles: u32) {
+        let needed = self.frames.awaited_pairs(request.submission);
+        self.pairs.review(self.device.memory_budget());
         self.pairs.make(request.scene.count, tiles, needed);
-        let mut expected = 0;
-        if matches!(request.settings.raster, Raster::Auto | Raster::Tiles)
-            && (fell_back || !self.pairs.is_fixed())
-        {
+        let has_lists = matches!(request.settings.raster, Raster::Auto | Raster::Tiles);
+        if has_lists && !self.pairs.is_fixed() {
             let whole = request.whole.unwrap_or(request.camera);
-            expected = self.estimate.update(request.scene, request.camera, whole);
-        }
-        self.pairs.expect(expected);
-        let has_grown = self.pairs.room() > had;
-        let lacks_room = fell_back && !has_grown && expected > self.pairs.room();
-        match request.submission {
-            // Where no more room can be made, quads are drawn at once.
-            Submission::Awaited => (!fell_back || has_grown, false),
-            Submission::InFlight => (false, lacks_room),
+            let expected = self.estimate.update(request.scene, request.camera, whole);
+            self.pairs.expect(expected);
         }
     }
 
@@ -404,11 +357,6 @@ impl Renderer {
 fn largest(plan: &EyePlan) -> u64 {
     let [of_eye, of_cut] = [Sizes::new(plan).largest(), Sizes::new(&plan.cut).largest()];
     of_eye.max(of_cut)
-}
-
-/// True where only tiles make what settings ask for, so that no quads can take their place.
-pub(super) fn needs_tiles(settings: &Settings, targets: &Targets) -> bool {
-    settings.show.needs_tiles() || targets.convert(settings.show)
 }
 
 pub(super) fn tiles_of(width: u32, height: u32) -> u32 {

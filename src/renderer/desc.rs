@@ -17,9 +17,7 @@ pub enum ColorSpace {
     Stored,
     /// The attachment has linear light, as in a host that lights in HDR and encodes its picture afterwards. Splats are blended
     /// as stored; the resulting picture is converted to linear light once and blended `over` the host's pixels. Only tiles do
-    /// so: another [`Raster`](crate::Raster) is refused, and so is a depth that is not [readable](DepthDesc::readable). A frame
-    /// whose tiles have no room draws nothing, as [`fell_back`](super::Renderer::fell_back) says, and where no more room can be
-    /// made, the next one is refused.
+    /// so: another [`Raster`](crate::Raster) is refused, and so is a depth that is not [readable](DepthDesc::readable).
     /// [`Show::Count`](crate::Show::Count), [`Show::Mean`](crate::Show::Mean) and [`Show::Strongest`](crate::Show::Strongest),
     /// which are numbers, stay as they are.
     Linear,
@@ -87,8 +85,7 @@ pub struct DepthDesc {
     /// and the cut through them; `None` where no depth is. Draws write the depth of the splat with which the pixel's alpha
     /// reaches so much, front to back: the mean, on the pixel's line of sight, of what the clip leaves of it, as in
     /// [`draw_depth`](super::Renderer::draw_depth). Pixels that stay below keep the host's depth, as do those whose depth is
-    /// nearer. It needs `readable` and tiles; a frame whose tiles have no room ([`fell_back`](super::Renderer::fell_back))
-    /// shows its colours and writes no depths. In the host's scope the attachment can be written.
+    /// nearer. It needs `readable` and tiles. In the host's scope the attachment can be written.
     pub write_alpha: Option<f32>,
 }
 

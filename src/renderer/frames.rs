@@ -24,12 +24,6 @@ pub(super) struct Decision {
     pub(super) unit: f64,
     /// Where the layers have the camera, where motion is drawn.
     pub(super) sight: Option<Sight>,
-    /// True when nothing is drawn of it without room for its pairs of tile and splat.
-    pub(super) redrawn: bool,
-    /// True when only tiles show what is asked for, so that no quads can take their place.
-    pub(super) needs_tiles: bool,
-    /// True when the tiles will have no room, as those of a frame before it had none.
-    pub(super) lacks_room: bool,
     /// True when it is the first to use a pipeline: drivers may compile that within the frame.
     pub(super) is_first_use: bool,
 }
@@ -130,20 +124,13 @@ impl FramesInFlight {
         (self.prepared >= count).then(|| &self.slots[self.slot(self.prepared)])
     }
 
-    /// The frame before which so many were prepared; `None` where a later one has its slot.
-    pub(super) fn recorded(&self, number: u64) -> Option<&RecordedFrame> {
-        let is_held = number < self.prepared && number + self.slots.len() as u64 >= self.prepared;
-        is_held.then(|| &self.slots[self.slot(number)])
-    }
-
-    /// Whether the last frame that was waited for before one of this submission had no room for its pairs of tile and splat,
-    /// and how many it had.
-    pub(super) fn awaited(&self, submission: Submission) -> (bool, u32) {
+    /// The pairs of tile and splat of the last frame that was waited for before one of this submission.
+    pub(super) fn awaited_pairs(&self, submission: Submission) -> u32 {
         let frame = match submission {
             Submission::Awaited => self.newest(),
             Submission::InFlight => self.oldest(),
         };
-        frame.map_or((false, 0), RecordedFrame::need)
+        frame.map_or(0, RecordedFrame::pairs)
     }
 
     pub(super) fn slots(&self) -> &[RecordedFrame] {

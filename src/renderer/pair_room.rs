@@ -7,10 +7,10 @@ use rara_base::error::{Error, Result};
 /// a tile, where they are few and large.
 const USUAL_PER_GAUSSIAN: u32 = 2;
 const USUAL_PER_TILE: u32 = 64;
-/// The most pairs, 1.5 GiB of lists, or 2.2 GiB with the pipelines for GPUs: frames with more are drawn as quads.
+/// The most pairs, 1.5 GiB of lists, or 2.2 GiB with the pipelines for GPUs: frames with more have coarse lists.
 pub(super) const MOST: u32 = 1 << 27;
 
-/// Where nothing else draws what is asked for, lists of half the room are tried down to so many pairs.
+/// Where the device has no memory, lists of half the room are tried down to so many pairs.
 const LEAST: u32 = 1 << 12;
 
 /// The room for pairs. It grows with the frames' needs, and does not shrink.
@@ -34,15 +34,6 @@ enum Growth {
     Held(u64),
     /// It does not: a host has reserved so much and no more.
     Fixed,
-}
-
-/// What is left to try of a frame that there was no memory for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Retry {
-    /// The same with room for fewer pairs.
-    Smaller,
-    /// Quads, which need no lists.
-    Quads,
 }
 
 impl Default for PairRoom {
@@ -107,23 +98,19 @@ impl PairRoom {
         }
     }
 
-    /// Takes back room after an error for want of memory, and returns what is left to try of the frame: frames with more
-    /// pairs than there is room for are drawn as quads, where quads can draw them.
+    /// Takes back room after an error for want of memory, so that the frame is tried in less; the error where nothing is left to
+    /// take.
     pub(super) fn retry(
         &mut self,
         error: Error,
         budget: Option<u64>,
         has_lists: bool,
-        can_be_quads: bool,
-    ) -> Result<Retry> {
+    ) -> Result<()> {
         match error {
-            Error::Budget(_) if self.hold(budget) => Ok(Retry::Smaller),
-            Error::Memory(_) if has_lists && (can_be_quads || self.room > LEAST) => {
+            Error::Budget(_) if self.hold(budget) => Ok(()),
+            Error::Memory(_) if has_lists && self.room > LEAST => {
                 self.refuse();
-                Ok(match can_be_quads {
-                    true => Retry::Quads,
-                    false => Retry::Smaller,
-                })
+                Ok(())
             }
             error => Err(error),
         }

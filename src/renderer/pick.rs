@@ -35,9 +35,8 @@ use rara_scene::settings::{Raster, Settings, Show};
 /// let ticket = unsafe { picker.record(cmd, scene, camera, clip, &Settings::default(), under_the_mouse)? };
 /// // ... two frames later, whose fence has been waited for:
 /// // SAFETY: the submission has finished.
-/// if let Some(picks) = unsafe { picker.read(ticket)? }
-///     && let Some(pick) = picks.strongest()
-/// {
+/// let picks = unsafe { picker.read(ticket)? };
+/// if let Some(pick) = picks.strongest() {
 ///     println!("Gaussian {} of layer {}", pick.number, pick.layer);
 /// }
 /// # Ok(())
@@ -192,14 +191,14 @@ impl Picker {
         })
     }
 
-    /// The answer to a request; `None` where there was no room for what its pixels show, for which later requests make it.
+    /// The answer to a request.
     ///
     /// # Safety
     /// The submission in which the request was recorded has finished.
     ///
     /// # Errors
     /// [`Error::Invalid`] for another picker's request, and for one whose memory a later one has taken.
-    pub unsafe fn read(&self, ticket: PickTicket) -> Result<Option<Picks>> {
+    pub unsafe fn read(&self, ticket: PickTicket) -> Result<Picks> {
         let slots = self.slots.len() as u64;
         if ticket.picker != self.renderer.id {
             return Err(Error::Invalid(
@@ -218,15 +217,11 @@ impl Picker {
                 ticket.request
             )));
         };
-        let frame = self.renderer.frames.recorded(ticket.request);
-        if frame.is_some_and(|frame| has_splats && frame.fell_back()) {
-            return Ok(None);
-        }
         let pixels = match has_splats {
             true => decoded(rect.extent, readback.mapped()),
             false => vec![None; (rect.extent.width * rect.extent.height) as usize],
         };
-        Ok(Some(Picks { rect, pixels }))
+        Ok(Picks { rect, pixels })
     }
 }
 

@@ -156,17 +156,24 @@ impl Renderer {
         let (map, targets) = (decision.depth_map, decision.targets);
         let pipelines = &state.pipelines;
         let pass = |drawer: &mut Drawer<'_>| {
-            let frame = (plan, buffers);
-            passes::splat::record(drawer, pipelines, frame, targets.colour, origin, map);
-            if plan.is_tiled() {
-                let mut composite = |part| {
-                    let draw = (composite::draw(plan, targets, part), buffers);
-                    composite::record(drawer, pipelines, draw, origin, (map, 1.0));
-                };
-                composite(Part::Colours);
-                if plan.way.writes_depth {
-                    composite(Part::WrittenDepth);
-                }
+            if !plan.is_tiled() {
+                let frame = (plan, buffers);
+                return passes::splat::record(
+                    drawer,
+                    pipelines,
+                    frame,
+                    targets.colour,
+                    origin,
+                    map,
+                );
+            }
+            let mut composite = |part| {
+                let draw = (composite::draw(plan, targets, part), buffers);
+                composite::record(drawer, pipelines, draw, origin, (map, 1.0));
+            };
+            composite(Part::Colours);
+            if plan.way.writes_depth {
+                composite(Part::WrittenDepth);
             }
         };
         // SAFETY: the caller promises that `cmd` is recording inside a fitting rendering scope.
@@ -206,13 +213,14 @@ impl Renderer {
         };
         let pipelines = &state.pipelines;
         let pass = |drawer: &mut Drawer<'_>| {
-            let frame = (plan, buffers);
             let map = (decision.depth_map, decision.unit);
-            passes::depth::record_draw(drawer, pipelines, frame, attachments, origin, map);
             if plan.is_tiled() {
                 let part = Part::ExpectedDepth(attachments);
                 let depths = (composite::draw(plan, decision.targets, part), buffers);
                 composite::record(drawer, pipelines, depths, origin, map);
+            } else {
+                let frame = (plan, buffers);
+                passes::depth::record_draw(drawer, pipelines, frame, attachments, origin, map);
             }
         };
         // SAFETY: the caller promises that `cmd` is recording inside a fitting rendering scope.
@@ -231,8 +239,8 @@ impl Renderer {
     ///
     /// Motion is 0 where there is no frame before, since [`forget`](Self::forget) too, where that showed a scene of another
     /// number of layers or in another projection, and where something was behind the eye. Pixels whose alpha is below
-    /// [`MotionDesc::least_alpha`](crate::MotionDesc::least_alpha), and all of them where tiles have no room
-    /// ([`fell_back`](Self::fell_back)), keep what the host has drawn. `origin` is as in [`draw`](Self::draw).
+    /// [`MotionDesc::least_alpha`](crate::MotionDesc::least_alpha) keep what the host has drawn. `origin` is as in
+    /// [`draw`](Self::draw).
     ///
     /// # Safety
     /// As for [`draw`](Self::draw), in such a scope.

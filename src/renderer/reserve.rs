@@ -3,7 +3,6 @@
 use glam::DVec3;
 
 use super::choose;
-use super::configure::needs_tiles;
 use super::frame::FrameCut;
 use super::frames::FramesInFlight;
 use super::limits::FrameLimits;
@@ -177,8 +176,7 @@ impl Renderer {
         (layers, clip, settings, size): (&[SceneLayer], &Clip, &Settings, (u32, u32)),
     ) -> Result<EyePlan> {
         let camera = Camera::look_at(DVec3::ZERO, DVec3::Z, DVec3::NEG_Y, 50.0, size)?;
-        let targets = self.targets(false);
-        let (raster, _) = self.choose_raster(settings, tiles(size), &targets)?;
+        let (raster, _) = self.choose_raster(settings, tiles(size), &self.targets(false))?;
         let facts = SceneFacts {
             layers,
             gaussians: limits.gaussians,
@@ -191,7 +189,6 @@ impl Renderer {
         };
         let eye = EyeFacts {
             pair_capacity: pairs.room(),
-            redrawn: needs_tiles(settings, &targets),
             ..self.facts(limits.gaussians, raster, self.depth_map())
         };
         let mut cut = CutPlan::new(facts, None, clip, settings)?;

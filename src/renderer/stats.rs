@@ -23,9 +23,8 @@ impl Renderer {
     }
 
     /// True when the frame that [`counts`](Self::counts) is about had more pairs of tile and splat than there was room
-    /// for, so that it was drawn as quads: the same picture, but slower. Of [`Show`](crate::Show)s that only tiles can make,
-    /// and in [linear light](crate::ColorSpace::Linear), nothing was drawn. The next [`configure`](Self::configure) makes
-    /// the room, up to 1.5 GiB, or 2.2 with the pipelines for GPUs.
+    /// for, so that its tiles looked for their splats in coarse lists: the same picture, but slower. The next
+    /// [`configure`](Self::configure) makes the room, up to 1.5 GiB, or 2.2 with the pipelines for GPUs.
     pub fn fell_back(&self) -> bool {
         self.oldest().is_some_and(RecordedFrame::fell_back)
     }
@@ -67,8 +66,7 @@ impl Renderer {
         self.oldest().map(RecordedFrame::stats)
     }
 
-    /// The outcome of the same frame, for hosts that draw only what has changed: it says whether the frame should be drawn once
-    /// more. `None` where no frame is that old.
+    /// The outcome of the same frame, for hosts that draw only what has changed. `None` where no frame is that old.
     pub fn outcome(&self) -> Option<Outcome> {
         self.oldest().map(|frame| self.outcome_of(frame))
     }
@@ -98,15 +96,7 @@ impl Renderer {
         if decision.changes_nothing() {
             return Outcome::Unchanged;
         }
-        if !frame.fell_back() {
-            return Outcome::Drawn;
-        }
-        match self.pairs.can_grow_to(frame.pairs()) {
-            true => Outcome::NeedsRoom,
-            false if decision.needs_tiles => Outcome::NoRoom,
-            false if decision.redrawn => Outcome::NeedsRoom,
-            false => Outcome::Drawn,
-        }
+        Outcome::Drawn
     }
 
     /// The statistics of a frame that changes nothing and is not even recorded.
@@ -132,19 +122,13 @@ impl Decision {
         self.plan.skipped()
     }
 
-    /// How splats become pixels, where its tiles have no room or where they do, and why in that way.
+    /// How splats become pixels, and why in that way.
     pub(super) fn raster(&self, fell_back: bool) -> RasterChoice {
         let path = match self.plan.way.raster {
-            Raster::Tiles if fell_back && self.needs_tiles => {
-                return RasterChoice {
-                    path: "tiles",
-                    reason: "there is no room for the tiles' lists, so that nothing is drawn",
-                };
-            }
             Raster::Tiles if fell_back => {
                 return RasterChoice {
-                    path: "quad",
-                    reason: "there is no room for the tiles' lists",
+                    path: "tiles",
+                    reason: "there is no room for a list of each tile, so that they have coarse ones",
                 };
             }
             Raster::Mesh => "mesh",
@@ -200,12 +184,7 @@ impl RecordedFrame {
     /// True when its tiles' lists had no room.
     pub(super) fn fell_back(&self) -> bool {
         let counts = self.read_counts();
-        counts.is_some_and(|counts| counts.pairs > 0 && counts.tiled == 0)
-    }
-
-    /// Whether its tiles' lists had no room, and the pairs that it had.
-    pub(super) fn need(&self) -> (bool, u32) {
-        (self.fell_back(), self.pairs())
+        counts.is_some_and(|counts| counts.pairs > 0 && counts.has_room == 0)
     }
 
     /// The pairs of tile and splat that it had, or would have had.

@@ -7,7 +7,7 @@ use ash::vk;
 
 use crate::passes::{SceneBuffers, SceneLayer, SplatColours};
 use crate::renderer::{
-    ColorSpace, ConfiguredFrame, FrameRequest, Kept, Outcome, Renderer, RendererDesc, Submission,
+    ColorSpace, ConfiguredFrame, FrameRequest, Kept, Renderer, RendererDesc, Submission,
 };
 use crate::stats::FrameStats;
 use crate::trace::{self, Trace};
@@ -160,7 +160,7 @@ impl Session {
             }
             Ok::<_, Error>(frame)
         };
-        let mut frame = configure(renderer, target)?;
+        let frame = configure(renderer, target)?;
         let begin = Instant::now();
         if frame.changes_nothing() && target.holds(frame.picture().as_ref(), settings.background) {
             return Ok(FrameStats {
@@ -168,27 +168,19 @@ impl Session {
                 ..renderer.unchanged_stats(&frame)
             });
         }
-        let (tiles, wall_ms, stats) = loop {
-            let tiles = frame.picture();
-            submit(&self.device, renderer, &request, (target, frame), trace)?;
-            let recorded = renderer.newest().expect("it was prepared just now");
-            // A first frame finds out how much room the tiles need.
-            match renderer.outcome_of(recorded) {
-                Outcome::NeedsRoom => {}
-                Outcome::NoRoom => return Err(Outcome::no_room(settings)),
-                Outcome::Drawn | Outcome::Unchanged => {
-                    break (tiles, ms_since(begin), recorded.stats());
-                }
-            }
-            drop(tiles);
-            frame = configure(renderer, target)?;
-        };
+        let tiles = frame.picture();
+        submit(&self.device, renderer, &request, (target, frame), trace)?;
+        let wall_ms = ms_since(begin);
+        let stats = renderer.newest().map(|frame| frame.stats());
         self.check_validation()?;
         match tiles {
             Some(tiles) => target.set_tiles(tiles, camera),
             None => target.set_held(settings.background),
         }
-        Ok(FrameStats { wall_ms, ..stats })
+        Ok(FrameStats {
+            wall_ms,
+            ..stats.unwrap_or_default()
+        })
     }
 
     /// Returns an error if the validation layer has said anything so far.

@@ -250,11 +250,7 @@ impl Windowed {
             return Ok(Redraw::WhenIdle);
         }
         // A frame that changes nothing leaves time to wait for the one before.
-        Ok(match self.wait()? {
-            Some(Outcome::NeedsRoom) => Redraw::WhenIdle,
-            Some(Outcome::NoRoom) => return Err(Outcome::no_room(settings)),
-            _ => Redraw::NotNeeded,
-        })
+        self.wait()
     }
 
     /// Shows the panels on a colour and nothing else, as while there is no scene yet.
@@ -342,20 +338,19 @@ impl Windowed {
         Ok(())
     }
 
-    /// Waits for the oldest frame in flight and reads its outcome; `None` before there are so many.
-    fn wait(&mut self) -> Result<Option<Outcome>> {
+    /// Waits for the oldest frame in flight and reads its outcome. Returns whether the frame should be drawn once more.
+    fn wait(&mut self) -> Result<Redraw> {
         self.frames.wait()?;
         let outcome = self.renderer.outcome();
         if self.renderer.is_first_use() {
-            // Its times may contain compilation: the next frame computes everything anew, and its times count. To the window
-            // that is as if it had to be drawn again.
+            // Its times may contain compilation: the next frame computes everything anew, and its times count.
             self.renderer.forget();
-            return Ok(Some(Outcome::NeedsRoom));
+            return Ok(Redraw::WhenIdle);
         }
         if outcome.is_some_and(|outcome| outcome != Outcome::Unchanged) {
             self.stats = self.renderer.stats();
         }
-        Ok(outcome)
+        Ok(Redraw::NotNeeded)
     }
 }
 

@@ -195,7 +195,7 @@ fn draw(renderer: &mut Headless, camera: &Camera, clip: &Clip, settings: &Settin
         let tiles = frame.eye.tiles.tile_count as usize;
         wanted.push(("tile_begins", 4 * (tiles + 1)));
         wanted.push(("tile_splats", 4 * counts.pairs as usize));
-        assert_eq!(counts.tiled, 1, "there is room");
+        assert_eq!(counts.has_room, 1, "there is room");
     } else {
         wanted.push((keys, 4 * listed));
         wanted.push(("quads", size_of::<rara::types::Quad>() * listed));

@@ -89,7 +89,7 @@ fn check(stages: &mut Stages, what: &str, quads: &[Quad]) -> [usize; 2] {
     let tiles = [size[0].div_ceil(TILE_WIDTH), size[1].div_ceil(TILE_HEIGHT)];
     let splats = stages.splats();
     let counts = stages.counts();
-    assert_eq!(counts.tiled, 1, "{what}");
+    assert_eq!(counts.has_room, 1, "{what}");
     let begins: Vec<u32> = stages.read("tile_begins");
     let begins = &begins[..(tiles[0] * tiles[1] + 1) as usize];
     let mut lists: Vec<u32> = stages.read("tile_splats");

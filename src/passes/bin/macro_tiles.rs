@@ -13,7 +13,7 @@ use crate::passes::shaders::{
 };
 use crate::passes::storage::{buffers, memory};
 use crate::passes::weight::Weight;
-use crate::passes::{cutoff, project, shared, sort};
+use crate::passes::{cutoff, project, shared, sort, tiles};
 use crate::types::TilesData;
 use rara_base::limits;
 
@@ -61,6 +61,14 @@ impl FromPlan<EyePlan> for batch_count::Constants {
     fn from_plan(plan: &EyePlan) -> Self {
         Self {
             several: Weight::from_plan(plan).has_several_kinds(),
+        }
+    }
+}
+
+impl FromPlan<EyePlan> for row_scan::Constants {
+    fn from_plan(plan: &EyePlan) -> Self {
+        Self {
+            several: tiles::has_two_lists(plan),
         }
     }
 }

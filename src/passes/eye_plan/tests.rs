@@ -30,7 +30,6 @@ fn plan(mode: Mode, planes: usize) -> EyePlan {
         tile_work: TileWork::suiting(DeviceShape::Cpu, 8),
         picture: None,
         pair_capacity: 1000,
-        redrawn: false,
         occluders: None,
         expects_depth: false,
         write_alpha: None,

@@ -80,26 +80,25 @@ fn a_refusal_is_remembered() {
     pairs.make(1000, 500, 40_000);
     assert_eq!(pairs.room(), 25_000);
 }
+
 #[test]
 fn a_frame_without_memory_is_tried_in_what_is_left() {
     let memory = || Error::Memory(String::new());
     let mut pairs = PairRoom::default();
     pairs.make(1000, 500, 40_000);
-    let held = pairs.retry(Error::Budget(String::new()), Some(1), true, true);
-    assert_eq!(held.expect("it had grown"), Retry::Smaller);
+    let held = pairs.retry(Error::Budget(String::new()), Some(1), true);
+    held.expect("it had grown");
     assert_eq!(pairs.room(), 34_000, "the usual");
-    let quads = pairs.retry(memory(), Some(1), true, true);
-    assert_eq!(quads.expect("they need no lists"), Retry::Quads);
     let mut tried = 0;
-    loop {
+    let error = loop {
         pairs.make(1000, 500, 0);
-        match pairs.retry(memory(), Some(1), true, false) {
-            Ok(retry) => assert_eq!(retry, Retry::Smaller),
-            Err(error) => break assert!(matches!(error, Error::Memory(_))),
+        match pairs.retry(memory(), Some(1), true) {
+            Ok(()) => tried += 1,
+            Err(error) => break error,
         }
-        tried += 1;
-    }
-    assert_eq!(tried, 3, "half the room each time");
-    let quads = pairs.retry(memory(), None, false, true);
-    assert!(quads.is_err(), "nothing is left");
+    };
+    assert!(matches!(error, Error::Memory(_)));
+    assert_eq!(tried, 4, "half the room each time");
+    let without_lists = pairs.retry(memory(), None, false);
+    assert!(without_lists.is_err(), "nothing is left");
 }

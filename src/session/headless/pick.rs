@@ -4,20 +4,17 @@ use ash::vk;
 
 use super::super::loaded;
 use super::Headless;
-use crate::renderer::{Kept, Outcome, Picker, Picks};
+use crate::renderer::{Kept, Picker, Picks};
 use rara_base::error::{Error, Result};
 use rara_scene::camera::Camera;
-use rara_scene::settings::{Settings, Show};
-
-/// Room for the tiles' lists is known to suffice, or not to be had, after so many requests.
-const TRIES: u32 = 8;
+use rara_scene::settings::Settings;
 
 impl Headless {
     /// Finds the Gaussians that the pixels of a part of the picture show most of, and waits for them. [`Picker`] does the same
     /// without waiting.
     ///
     /// # Errors
-    /// As [`Picker::record`], [`Error::Memory`] without room for what the pixels show, and [`Error::Invalid`] without a scene.
+    /// As [`Picker::record`], and [`Error::Invalid`] without a scene.
     pub fn pick<'a>(
         &mut self,
         camera: &Camera,
@@ -39,22 +36,13 @@ impl Headless {
         let session = &self.session;
         let (device, scene) = (&session.device, loaded(&session.scene, "pick from")?);
         let mut picker = Picker::new(&session.renderer, 1)?;
-        for _ in 0..TRIES {
-            let mut ticket = None;
-            device.submit_and_wait(|cmd| {
-                // SAFETY: `cmd` is recording outside a rendering scope, all earlier submissions were waited for, and scene
-                // and picker outlive the wait for this one.
-                let recorded = unsafe { picker.record(cmd, scene, camera, kept, settings, rect) };
-                ticket = Some(recorded?);
-                Ok(())
-            })?;
-            Error::validated(device.validation_messages())?;
-            // SAFETY: the submission was waited for.
-            let picks = ticket.map(|ticket| unsafe { picker.read(ticket) });
-            if let Some(picks) = picks.transpose()?.flatten() {
-                return Ok(picks);
-            }
-        }
-        Err(Outcome::no_room(&settings.show(Show::Strongest)))
+        let ticket = device.submit_and_wait(|cmd| {
+            // SAFETY: `cmd` is recording outside a rendering scope, all earlier submissions were waited for, and scene
+            // and picker outlive the wait for this one.
+            unsafe { picker.record(cmd, scene, camera, kept, settings, rect) }
+        })?;
+        Error::validated(device.validation_messages())?;
+        // SAFETY: the submission was waited for.
+        unsafe { picker.read(ticket) }
     }
 }

@@ -104,9 +104,9 @@ fn reaching(world: &World, scene: &Gaussians, least: f64) -> Vec<f64> {
         .collect()
 }
 
-/// In a classic render pass they are the same bytes; a frame whose tiles have no room writes none.
+/// In a classic render pass they are the same bytes, and without room for the tiles' lists the same too.
 #[test]
-fn render_passes_get_the_same_depths_and_frames_without_room_none() {
+fn render_passes_and_frames_without_room_get_the_same_depths() {
     let world = World::new();
     let map = maps()[1];
     with_host(true, |host, device| {
@@ -141,9 +141,9 @@ fn render_passes_get_the_same_depths_and_frames_without_room_none() {
         assert!(dynamic == classic);
         let (depths, picture) = roomless;
         let worst = apart(&picture, &dynamic.1, 0.0);
-        assert!(worst < 1.0, "{worst}/255");
-        let closer = depths.iter().zip(&dynamic.0).filter(|(a, b)| a < b);
-        assert_eq!(closer.count(), 0, "no depth of a splat");
+        assert!(worst < 1e-3, "{worst}/255");
+        let others = depths.iter().zip(&dynamic.0).filter(|(a, b)| a != b);
+        assert_eq!(others.count(), 0);
     });
 }
 

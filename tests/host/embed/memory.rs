@@ -90,10 +90,10 @@ fn a_first_frame_of_tiles_has_room_and_those_after_it_keep_it() {
 }
 
 /// A first frame has no room for all of its pairs of tile and splat, as the estimate, which looks at every third of these
-/// Gaussians, takes none of the large ones for what they are: it is drawn as quads, with the same picture, and the next
+/// Gaussians, takes none of the large ones for what they are: its lists are coarse, with the same picture, and the next
 /// frame after the host has waited for it has the room.
 #[test]
-fn a_frame_without_room_for_its_tiles_is_drawn_as_quads() {
+fn a_frame_without_room_for_its_tiles_has_coarse_lists() {
     let mut scene = generate(Kind::General, 2_100, 5);
     scene.scales_mut().fill(glam::Vec3::splat(1e-3));
     scene.opacities_mut().fill(0.01);

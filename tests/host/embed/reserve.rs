@@ -241,9 +241,9 @@ fn a_budget_is_kept_and_says_what_to_do() {
     engine.close();
 }
 
-/// Pairs of tile and splat that a budget has no room for are no reason to draw nothing: the frame is drawn as quads.
+/// Pairs of tile and splat that a budget has no room for are no reason to draw nothing: the frame has coarse lists.
 #[test]
-fn a_budget_without_room_for_all_pairs_draws_quads() {
+fn a_budget_without_room_for_all_pairs_has_coarse_lists() {
     let mut scene = generate(Kind::General, 1_000, 5);
     scene.scales_mut().fill(rara::glam::Vec3::splat(2.0));
     scene.opacities_mut().fill(0.02);
@@ -262,7 +262,7 @@ fn a_budget_without_room_for_all_pairs_draws_quads() {
         engine.configure(&shown);
         engine.record(vk::Offset2D::default());
         let pixels = engine.wait_for_all();
-        assert_shows("as quads", FLOATS, &pixels, &expected);
+        assert_shows("with coarse lists", FLOATS, &pixels, &expected);
     }
     assert!(engine.renderer.fell_back());
     // With another budget it grows.
@@ -272,7 +272,7 @@ fn a_budget_without_room_for_all_pairs_draws_quads() {
         engine.configure(&shown);
         engine.record(vk::Offset2D::default());
         let pixels = engine.wait_for_all();
-        assert_shows("as tiles", FLOATS, &pixels, &expected);
+        assert_shows("with room", FLOATS, &pixels, &expected);
     }
     assert!(!engine.renderer.fell_back());
     drop(device);

@@ -8,7 +8,7 @@ use rara::ash::{self, vk};
 use rara::gpu::{AdoptDesc, Device, DeviceShape};
 use rara::{Error, Result};
 
-use crate::boundary::{RaraResult, Versioned, guard, invalid, read, versioned, write};
+use crate::boundary::{RaraResult, Versioned, guard, invalid, list, read, versioned, write};
 use crate::handles::{create, destroy, number};
 use crate::lent::{Lender, RaraAllocate, RaraFree};
 
@@ -42,7 +42,8 @@ pub struct RaraAdoptDesc {
     pub physical_device: vk::PhysicalDevice,
     /// Created with what rara_support_features sets.
     pub device: vk::Device,
-    /// A queue with graphics and compute; everything that rara records goes to it.
+    /// A queue with graphics and compute. What rara itself submits goes to it, and so does everything that it records, but for
+    /// what `shared_families` allows.
     pub queue: vk::Queue,
     /// The queue's family.
     pub queue_family: u32,
@@ -85,6 +86,12 @@ pub struct RaraAdoptDesc {
     /// False when the feature bufferDeviceAddress was not enabled: RARA_BINDINGS_BOUND takes the place of the other ways, and
     /// needs `push_descriptor`. Default: true, which counts where the device has the feature.
     pub buffer_device_address: vk::Bool32,
+    /// Further queue families whose queues use rara's memory: for `compute_family` of RaraRendererDesc, or for the copies of
+    /// rara_scene_buffers_upload_with. Buffers are then created with VK_SHARING_MODE_CONCURRENT for all of them. Only the call
+    /// itself reads it. Null, the default, for none.
+    pub shared_families: *const u32,
+    /// How many there are. Default: 0.
+    pub shared_family_count: usize,
 }
 
 versioned!(RaraAdoptDesc);
@@ -153,8 +160,11 @@ pub unsafe extern "C" fn rara_device_adopt(
         let device = load_device(&instance, &desc)?;
         let queue = (desc.queue, desc.queue_family);
         let version = desc.api_version;
+        let (first, count) = (desc.shared_families, desc.shared_family_count);
+        let families = list(first, count, "desc->shared_families")?;
         let lender = Lender::new(desc.allocate, desc.free, desc.allocator_user)?;
         let adopt = AdoptDesc::new(version, instance, desc.physical_device, device, queue)
+            .shared_families(families.to_vec())
             .buffer_device_address(desc.buffer_device_address != 0)
             .mesh_shader(desc.mesh_shader != 0)
             .push_descriptor(desc.push_descriptor != 0)

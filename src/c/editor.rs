@@ -138,8 +138,9 @@ pub unsafe extern "C" fn rara_layer_editor_bytes(editor: *const RaraLayerEditor)
 /// for a layer of Gaussians that rara_gaussians_select has divided; nothing has been recorded then, and the scene is as it was.
 ///
 /// Synchronisation: the commands begin with a barrier behind all dispatches, draws and copies that are earlier in the queue,
-/// and so do those of rara_renderer_prepare. Only before it writes into the buffer again, the host waits, by a barrier from
-/// compute shaders to what writes it, for the edit to have read it.
+/// those of rara_renderer_prepare with one that waits for edits. Only before it writes into the buffer again, the host waits, by
+/// a barrier from compute shaders to what writes it, for the edit to have read it. With `compute_family` of RaraRendererDesc the
+/// barriers wait for dispatches and copies alone.
 ///
 /// # Safety
 /// `cmd` is recording outside a rendering scope, and will be submitted to the device's queue; if it never is, the scene is not

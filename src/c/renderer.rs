@@ -27,6 +27,10 @@ use crate::text::text;
 /// Synchronisation: none is needed between the two recorded calls, nor for the buffers of renderer and scene. The
 /// attachments are the host's to synchronise, as for any draw of its own.
 ///
+/// Two queues: with `compute_family` of RaraRendererDesc, what rara_renderer_prepare and a cut, a picker or a layer editor of
+/// the renderer record goes to a queue of that family, and the draws go to the queue that was lent. Then a semaphore has the
+/// draws wait for their preparation, and another one has each preparation wait for the draws before it.
+///
 /// The calls bind pipelines, push constants and, with RARA_BINDINGS_BOUND, push descriptor set 0: the host binds its own
 /// again. rara_renderer_draw sets the viewport, so that the host's own may be any, of negative height too, and binding
 /// rara's pipelines undoes all other dynamic state but the scissor: the host sets all that its pipelines need again. The

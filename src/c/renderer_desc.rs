@@ -96,6 +96,11 @@ pub struct RaraRendererDesc {
     pub motion_render_pass: vk::RenderPass,
     /// The subpass of motion_render_pass to draw in.
     pub motion_subpass: u32,
+    /// The queue family of the command buffers that rara_renderer_prepare records into, where they are submitted to another
+    /// queue than the draws, as one without graphics: one of `shared_families` of RaraAdoptDesc, or the device's own. The host
+    /// then orders the two by semaphores, as RaraRenderer says. Default: VK_QUEUE_FAMILY_IGNORED, where both are submitted to
+    /// the device's queue.
+    pub compute_family: u32,
 }
 
 versioned!(RaraRendererDesc);
@@ -107,6 +112,7 @@ impl RaraRendererDesc {
             samples: vk::SampleCountFlags::TYPE_1,
             frames_in_flight: 1,
             motion_least_alpha: MotionDesc::new(color_format).least_alpha,
+            compute_family: vk::QUEUE_FAMILY_IGNORED,
             ..Versioned::BLANK
         }
     }
@@ -161,6 +167,8 @@ pub(crate) unsafe fn renderer_desc(desc: *const RaraRendererDesc) -> Result<Rend
         other => return invalid(format!("desc->color_space {other} is no RaraColorSpace")),
     };
     let target = target(desc.render_pass, desc.subpass);
+    let is_elsewhere = desc.compute_family != vk::QUEUE_FAMILY_IGNORED;
+    let compute_family = is_elsewhere.then_some(desc.compute_family);
     Ok(RendererDesc::new(desc.color_format)
         .color_space(color_space)
         .depth(depth)
@@ -172,7 +180,8 @@ pub(crate) unsafe fn renderer_desc(desc: *const RaraRendererDesc) -> Result<Rend
         .timing(desc.timing != 0)
         .statistics(desc.statistics != 0)
         .reuse(desc.reuse != 0)
-        .frames_in_flight(desc.frames_in_flight))
+        .frames_in_flight(desc.frames_in_flight)
+        .compute_family(compute_family))
 }
 
 /// One colour attachment of one sample in dynamic rendering, no timestamps, no statistics, no reuse, one frame in flight.

@@ -58,9 +58,10 @@ pub unsafe extern "C" fn rara_scene_buffers_staging_bytes(
 /// host's staging memory and records the copies. Nothing is submitted and nothing waits, so that a scene can come or be
 /// replaced while frames are in flight. The calling thread converts the scene meanwhile; it need not be the one that draws.
 ///
-/// Synchronisation: the copies are ordered behind everything earlier in the queue, and nothing is needed after them,
-/// since rara_renderer_prepare begins with a barrier that waits for transfers. It may be recorded later into the same
-/// command buffer, or into one that is submitted later to the same queue. What is written to the staging memory reaches
+/// Synchronisation: the copies wait for nothing, as their memory is new, and nothing is needed after them, since
+/// rara_renderer_prepare begins with a barrier that waits for transfers. It may be recorded later into the same command buffer,
+/// or into one that is submitted later to the same queue. Where `cmd` goes to another queue, as one for transfers alone, whose
+/// family is one of `shared_families` of RaraAdoptDesc, the submission of rara_renderer_prepare waits for a semaphore. What is written to the staging memory reaches
 /// the device with the submission where the memory is host-coherent; else the host flushes the range before it submits.
 ///
 /// Lifetimes: the host leaves the staging range alone and keeps `*scene` alive until `cmd` has executed. A scene that is
@@ -69,7 +70,7 @@ pub unsafe extern "C" fn rara_scene_buffers_staging_bytes(
 ///
 /// # Safety
 /// The layers are as their fields say. `cmd` is recording outside a rendering scope, and will be submitted to the device's
-/// queue, or never; no other thread uses its pool. `staging` is as its fields say, and neither the device nor anybody else
+/// queue or to one of a shared family, or never; no other thread uses its pool. `staging` is as its fields say, and neither the device nor anybody else
 /// uses its range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_scene_buffers_upload_with(

@@ -40,7 +40,8 @@ const TABLE: [(Access, Stages, Memory, Memory); 8] = {
     ]
 };
 
-/// Shader stages of a draw. The mesh stages may only be named where the device has them: see [`Access::masks`].
+/// Shader stages of a draw. The mesh stages may only be named where the device has them, and all of them only where the queue
+/// draws: see [`Access::masks`].
 pub(super) const DRAW_STAGES: Stages = Stages::from_raw(
     Stages::VERTEX_SHADER.as_raw() | Stages::FRAGMENT_SHADER.as_raw() | MESH_STAGES.as_raw(),
 );
@@ -56,9 +57,9 @@ impl Access {
         TABLE.iter().map(|row| row.0)
     }
 
-    /// Stages and memory accesses, for a device with or without mesh shaders.
-    pub fn masks(self, mesh_shader: bool) -> (vk::PipelineStageFlags2, vk::AccessFlags2) {
-        let (stages, reads, writes) = self.row(mesh_shader);
+    /// Stages and memory accesses, where draws have these stages.
+    pub fn masks(self, draw_stages: Stages) -> (Stages, Memory) {
+        let (stages, reads, writes) = self.row(draw_stages);
         (stages, reads | writes)
     }
 
@@ -73,14 +74,9 @@ impl Access {
     }
 
     /// The stages, the memory that they read, and the memory that they write.
-    pub(super) fn row(self, mesh_shader: bool) -> (Stages, Memory, Memory) {
+    pub(super) fn row(self, draw_stages: Stages) -> (Stages, Memory, Memory) {
         let (_, stages, reads, writes) = TABLE[self as usize];
-        let absent = if mesh_shader {
-            Stages::NONE
-        } else {
-            MESH_STAGES
-        };
-        (stages & !absent, reads, writes)
+        (stages & !(DRAW_STAGES & !draw_stages), reads, writes)
     }
 }
 
@@ -94,7 +90,7 @@ mod tests {
         for (row, (access, stages, reads, writes)) in TABLE.iter().enumerate() {
             assert_eq!(*access as usize, row);
             assert!(!stages.is_empty() && !(*reads | *writes).is_empty());
-            assert_eq!(access.masks(true), (*stages, *reads | *writes));
+            assert_eq!(access.masks(DRAW_STAGES), (*stages, *reads | *writes));
             assert_eq!(
                 (access.reads(), access.writes()),
                 (!reads.is_empty(), !writes.is_empty())
@@ -103,12 +99,13 @@ mod tests {
     }
 
     #[test]
-    fn mesh_stages_are_named_only_where_they_exist() {
-        assert!(DrawRead.masks(true).0.contains(MESH_STAGES));
+    fn draw_stages_are_named_only_where_they_exist() {
         for access in Access::all() {
-            assert!(
-                !access.masks(false).0.intersects(MESH_STAGES) && !access.masks(false).0.is_empty()
-            );
+            let without_mesh = access.masks(DRAW_STAGES & !MESH_STAGES).0;
+            assert!(!without_mesh.intersects(MESH_STAGES) && !without_mesh.is_empty());
+            let without_draws = access.masks(Stages::NONE).0;
+            assert!(!without_draws.intersects(DRAW_STAGES));
+            assert_eq!(without_draws.is_empty(), access == DrawRead);
         }
     }
 }

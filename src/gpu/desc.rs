@@ -59,10 +59,15 @@ pub struct AdoptDesc {
     /// The device, created with [`Support::features`](super::Support::features), and with those of
     /// [`Support::extensions`](super::Support::extensions) that the flags below name.
     pub device: ash::Device,
-    /// A queue for graphics and compute, to which everything goes that is recorded with this device.
+    /// A queue for graphics and compute. rara's own submissions go to it, and so does everything that is recorded, but for
+    /// what [`shared_families`](Self::shared_families) allows.
     pub queue: vk::Queue,
     /// The queue's family.
     pub queue_family: u32,
+    /// Further queue families whose queues use rara's memory: for the compute commands of frames, or for the copies of
+    /// `SceneBuffers::upload_with`. rara's buffers are then shared by all of them (`VK_SHARING_MODE_CONCURRENT`), so that none
+    /// has to change its owner. None are needed for several queues of one family.
+    pub shared_families: Vec<u32>,
     /// False when `bufferDeviceAddress` was not enabled: [`Bindings::Bound`](super::Bindings::Bound) takes the place of the
     /// other ways, and needs [`push_descriptor`](Self::push_descriptor). It counts where the device has the feature.
     pub buffer_device_address: bool,
@@ -93,6 +98,7 @@ pub struct AdoptDesc {
 }
 
 setters!(AdoptDesc {
+    shared_families: Vec<u32>,
     buffer_device_address: bool,
     mesh_shader: bool,
     push_descriptor: bool,
@@ -107,8 +113,8 @@ setters!(AdoptDesc {
 });
 
 impl AdoptDesc {
-    /// A device with `bufferDeviceAddress` where it has that and nothing else that is optional, no pipeline cache, and an
-    /// allocator of rara's own.
+    /// A device of one queue family, with `bufferDeviceAddress` where it has that and nothing else that is optional, no
+    /// pipeline cache, and an allocator of rara's own.
     pub fn new(
         api_version: u32,
         instance: ash::Instance,
@@ -123,6 +129,7 @@ impl AdoptDesc {
             device,
             queue,
             queue_family,
+            shared_families: Vec::new(),
             buffer_device_address: true,
             mesh_shader: false,
             push_descriptor: false,

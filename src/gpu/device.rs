@@ -37,6 +37,8 @@ pub(super) struct Inner {
     support: Support,
     pub(super) queue: Mutex<vk::Queue>,
     queue_family: u32,
+    /// The families whose queues use its memory, each once, that of the queue included.
+    families: Vec<u32>,
     pipeline_cache: vk::PipelineCache,
     /// How long the driver has made pipelines.
     pub(super) pipeline_ns: AtomicU64,
@@ -101,6 +103,10 @@ impl Device {
         (shape, shape_reason): (DeviceShape, &'static str),
     ) -> Self {
         let (instance, raw) = (desc.instance, desc.device);
+        let mut families = desc.shared_families;
+        families.push(desc.queue_family);
+        families.sort_unstable();
+        families.dedup();
         Self {
             inner: Arc::new(Inner {
                 commands: Commands::load(&instance, &raw, support.api_version),
@@ -120,6 +126,7 @@ impl Device {
                 support,
                 queue: Mutex::new(desc.queue),
                 queue_family: desc.queue_family,
+                families,
                 pipeline_cache: desc.pipeline_cache,
                 pipeline_ns: AtomicU64::new(0),
                 ahead: OnceLock::new(),
@@ -226,6 +233,22 @@ impl Device {
     /// The family of the queue.
     pub fn queue_family(&self) -> u32 {
         self.inner.queue_family
+    }
+
+    /// The families whose queues use its memory.
+    pub(super) fn families(&self) -> &[u32] {
+        &self.inner.families
+    }
+
+    /// What the queues of a family can do; `None` for one that its memory is not shared with.
+    #[doc(hidden)]
+    pub fn queue_flags(&self, family: u32) -> Option<vk::QueueFlags> {
+        self.families().contains(&family).then(|| {
+            let (instance, physical) = (&self.inner.instance, self.inner.physical);
+            // SAFETY: the instance is ours, or the host's and outlives this device.
+            let all = unsafe { instance.get_physical_device_queue_family_properties(physical) };
+            all[family as usize].queue_flags
+        })
     }
 
     /// Takes the validation layer's warnings and errors since the last call, from all threads. Empty without the

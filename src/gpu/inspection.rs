@@ -118,8 +118,11 @@ impl Device {
         self.note(|recorded| *recorded = RecordedCommands::default());
     }
 
-    pub(super) fn note_barrier(&self) {
-        self.note(|recorded| recorded.barriers += 1);
+    pub(super) fn note_barrier(&self, stages: vk::PipelineStageFlags2) {
+        self.note(|recorded| {
+            recorded.barriers += 1;
+            recorded.stages |= stages;
+        });
     }
 
     pub(super) fn note_dispatch(&self, name: &'static str, groups: Groups<'_>) {

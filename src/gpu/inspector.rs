@@ -2,7 +2,7 @@
 
 use std::sync::Mutex;
 
-use ash::khr;
+use ash::{khr, vk};
 
 /// A shader of a pipeline, as it was asked for and as the driver has compiled it.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -25,6 +25,8 @@ pub struct CompiledShader {
 pub struct RecordedCommands {
     /// How many barriers there are.
     pub barriers: u32,
+    /// The stages that they name.
+    pub stages: vk::PipelineStageFlags2,
     /// The dispatches in order.
     pub dispatches: Vec<DispatchNote>,
 }

@@ -83,6 +83,12 @@ pub use timer::{PassSpan, Timer, measures_dispatches};
 pub use write_only::WriteOnly;
 #[doc(hidden)]
 pub use {
-    access::Access, clock::Calibration, instance::Instance, recorder::group_grid,
-    requirements::offers, shader::MAX_PARAMS, submission::Submission, tracker::Tracker,
+    access::Access,
+    clock::Calibration,
+    instance::Instance,
+    recorder::group_grid,
+    requirements::offers,
+    shader::MAX_PARAMS,
+    submission::Submission,
+    tracker::{Draws, Tracker},
 };

@@ -74,7 +74,12 @@ impl Device {
         if has_address {
             usage |= Usage::SHADER_DEVICE_ADDRESS;
         }
-        let info = vk::BufferCreateInfo::default().size(size).usage(usage);
+        let mut info = vk::BufferCreateInfo::default().size(size).usage(usage);
+        if self.families().len() > 1 {
+            info = info
+                .sharing_mode(vk::SharingMode::CONCURRENT)
+                .queue_family_indices(self.families());
+        }
         // SAFETY: the device is alive as long as `self`.
         let handle =
             unsafe { self.raw().create_buffer(&info, None) }.map_err(failed("vkCreateBuffer"))?;

@@ -122,12 +122,18 @@ impl Device {
             desc.instance
                 .get_physical_device_queue_family_properties(desc.physical_device)
         };
-        let Some(family) = families.get(desc.queue_family as usize) else {
-            return Err(Error::Invalid(format!(
-                "the device has no queue family {}",
-                desc.queue_family
-            )));
+        let family = |index: u32, field: &str| {
+            families.get(index as usize).ok_or_else(|| {
+                Error::Invalid(format!(
+                    "the device has no queue family {index}, as AdoptDesc::{field} says: it has {}, counted from 0",
+                    families.len()
+                ))
+            })
         };
+        let shared = desc.shared_families.iter();
+        let shared = shared.map(|index| family(*index, "shared_families"));
+        let shared = shared.collect::<Result<Vec<_>>>()?;
+        let family = family(desc.queue_family, "queue_family")?;
         if !family
             .queue_flags
             .contains(vk::QueueFlags::GRAPHICS | vk::QueueFlags::COMPUTE)
@@ -138,7 +144,15 @@ impl Device {
             )));
         }
         support.queue_family = desc.queue_family;
-        support.timestamp_bits = family.timestamp_valid_bits;
+        // Frames are timed in each queue that computes or draws.
+        let timed = |family: &&&vk::QueueFamilyProperties| {
+            family.queue_flags.contains(vk::QueueFlags::COMPUTE)
+        };
+        let bits = shared
+            .iter()
+            .filter(timed)
+            .map(|family| family.timestamp_valid_bits);
+        support.timestamp_bits = bits.fold(family.timestamp_valid_bits, u32::min);
         if support.timestamp_bits == 0 {
             support.timestamp_period = 0.0;
         }

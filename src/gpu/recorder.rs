@@ -11,7 +11,7 @@ use super::memory::Buffer;
 use super::pipeline::ComputePipeline;
 use super::shader::MAX_BUFFERS;
 use super::timer::Timer;
-use super::tracker::Tracker;
+use super::tracker::{Draws, Tracker};
 use rara_base::limits::GROUP_COLUMNS;
 
 /// How many workgroups a dispatch has.
@@ -62,7 +62,8 @@ pub struct Recorder<'a> {
 }
 
 impl<'a> Recorder<'a> {
-    /// Begins with a barrier that orders the recording after everything earlier in the queue, and resets the timer.
+    /// Begins with a barrier that orders the recording after everything earlier in the queue, but for draws that are elsewhere
+    /// or have been waited for, and resets the timer.
     ///
     /// # Safety
     ///
@@ -72,23 +73,52 @@ impl<'a> Recorder<'a> {
     pub unsafe fn begin(
         device: &'a Device,
         cmd: vk::CommandBuffer,
+        draws: Draws,
         timer: Option<&'a mut Timer>,
     ) -> Self {
-        let tracker = Tracker::new(device.support().mesh_shader);
-        let mut this = Self {
-            device,
-            cmd,
-            tracker,
-            timer,
-        };
-        #[cfg(feature = "lab")]
-        device.note_recording();
+        let mut this = Self::new(device, cmd, draws, timer);
         this.barrier(&this.tracker.opening());
         if let Some(timer) = &mut this.timer {
             // SAFETY: the caller vouches for `cmd`; the timer's earlier recordings go to the same queue.
             unsafe { timer.reset(cmd) };
         }
         this
+    }
+
+    /// Begins a recording of copies alone, in any queue. Its barrier stands behind everything earlier in the queue; it has none
+    /// where the memory that is written is new.
+    ///
+    /// # Safety
+    /// As for [`begin`](Self::begin), of which the queue of `cmd` may be another than the device's.
+    pub unsafe fn begin_copies(device: &'a Device, cmd: vk::CommandBuffer, into_new: bool) -> Self {
+        let this = Self::new(device, cmd, Draws::Elsewhere, None);
+        if !into_new {
+            // Queues for transfers alone lack the stages of the vocabulary.
+            this.barrier(
+                &vk::MemoryBarrier2::default()
+                    .src_stage_mask(vk::PipelineStageFlags2::ALL_COMMANDS)
+                    .src_access_mask(vk::AccessFlags2::MEMORY_WRITE)
+                    .dst_stage_mask(vk::PipelineStageFlags2::ALL_TRANSFER)
+                    .dst_access_mask(vk::AccessFlags2::TRANSFER_WRITE),
+            );
+        }
+        this
+    }
+
+    fn new(
+        device: &'a Device,
+        cmd: vk::CommandBuffer,
+        draws: Draws,
+        timer: Option<&'a mut Timer>,
+    ) -> Self {
+        #[cfg(feature = "lab")]
+        device.note_recording();
+        Self {
+            device,
+            cmd,
+            tracker: Tracker::new(device.support().mesh_shader, draws),
+            timer,
+        }
     }
 
     /// The command buffer.
@@ -367,8 +397,11 @@ impl<'a> Recorder<'a> {
     }
 
     /// Makes buffers visible to draws later in the command buffer, as storage and arguments, so that they need no
-    /// barrier inside a rendering scope.
+    /// barrier inside a rendering scope. Draws in another queue see what the host's semaphore makes visible.
     pub fn ready_to_draw(&mut self, buffers: &[&Buffer]) {
+        if self.tracker.draws() == Draws::Elsewhere {
+            return;
+        }
         self.ready(buffers, &[Access::DrawRead, Access::IndirectRead]);
     }
 
@@ -393,7 +426,8 @@ impl<'a> Recorder<'a> {
 
     fn barrier(&self, barrier: &vk::MemoryBarrier2<'_>) {
         #[cfg(feature = "lab")]
-        self.device.note_barrier();
+        self.device
+            .note_barrier(barrier.src_stage_mask | barrier.dst_stage_mask);
         let info = vk::DependencyInfo::default().memory_barriers(std::slice::from_ref(barrier));
         // SAFETY: `begin`'s contract covers `cmd`; the masks come from the table of accesses, for this device's stages.
         unsafe { self.device.commands().pipeline_barrier(self.cmd, &info) };

@@ -3,7 +3,7 @@
 use ash::vk;
 use smallvec::SmallVec;
 
-use super::access::{Access, Memory, Stages};
+use super::access::{Access, DRAW_STAGES, MESH_STAGES, Memory, Stages};
 
 /// A set of [`Access`] names, one bit each.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -27,9 +27,9 @@ impl Set {
     }
 
     /// The stages of all members, and the memory that they write.
-    fn as_source(self, mesh: bool) -> (Stages, Memory) {
+    fn as_source(self, draw_stages: Stages) -> (Stages, Memory) {
         self.iter()
-            .map(|a| a.row(mesh))
+            .map(|a| a.row(draw_stages))
             .fold((Stages::NONE, Memory::NONE), |(s, m), row| {
                 (s | row.0, m | row.2)
             })
@@ -59,34 +59,63 @@ impl History {
     }
 }
 
+/// The draws that the barriers of a recording are between.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Draws {
+    /// Those before the recording in its queue, and those after it.
+    Around,
+    /// Those after it: the host has waited for the ones before.
+    After,
+    /// None: they are in another queue, and the host's semaphores order them. No barrier names their stages, which that of the
+    /// recording may lack.
+    Elsewhere,
+}
+
 /// Remembers what a recording has done to its buffers and derives each pass's barrier.
 ///
 /// A fresh tracker knows nothing of earlier work: the recording starts with [`Tracker::opening`].
 #[derive(Debug)]
 pub struct Tracker {
-    mesh: bool,
+    draws: Draws,
+    /// The shader stages of draws that barriers may name.
+    draw_stages: Stages,
     /// A frame has about forty; recording allocates nothing for them.
     buffers: SmallVec<[History; 64]>,
 }
 
 impl Tracker {
     /// A tracker for a device with or without mesh shaders.
-    pub fn new(mesh_shader: bool) -> Self {
+    pub fn new(mesh_shader: bool, draws: Draws) -> Self {
         Self {
-            mesh: mesh_shader,
+            draws,
+            draw_stages: match (draws, mesh_shader) {
+                (Draws::Elsewhere, _) => Stages::NONE,
+                (_, true) => DRAW_STAGES,
+                (_, false) => DRAW_STAGES & !MESH_STAGES,
+            },
             buffers: SmallVec::new(),
         }
     }
 
-    /// The barrier that orders a recording after everything the vocabulary can have done before it in the queue.
+    /// The draws that the barriers are between.
+    pub fn draws(&self) -> Draws {
+        self.draws
+    }
+
+    /// The barrier that orders a recording after what the vocabulary can have done before it in the queue, but for draws that
+    /// the host has waited for.
     pub fn opening(&self) -> vk::MemoryBarrier2<'static> {
         let everyone = Access::all().filter(|a| *a != Access::HostRead);
         let (mut stages, mut reads, mut writes) = (Stages::NONE, Memory::NONE, Memory::NONE);
-        for (s, r, w) in everyone.map(|a| a.row(self.mesh)) {
+        for (s, r, w) in everyone.map(|a| a.row(self.draw_stages)) {
             (stages, reads, writes) = (stages | s, reads | r, writes | w);
         }
+        let awaited = match self.draws {
+            Draws::Around => Stages::NONE,
+            Draws::After | Draws::Elsewhere => DRAW_STAGES,
+        };
         vk::MemoryBarrier2::default()
-            .src_stage_mask(stages)
+            .src_stage_mask(stages & !awaited)
             .src_access_mask(writes)
             .dst_stage_mask(stages)
             .dst_access_mask(reads | writes)
@@ -102,16 +131,16 @@ impl Tracker {
         for (buffer, access) in uses {
             let at = self.index(*buffer);
             let history = self.buffers[at];
-            let (stages, memory) = access.masks(self.mesh);
+            let (stages, memory) = access.masks(self.draw_stages);
             if !history.writers.is_empty() && !history.seen_by.has(*access) {
-                let (writer, written) = history.writers.as_source(self.mesh);
+                let (writer, written) = history.writers.as_source(self.draw_stages);
                 (src, src_memory) = (src | writer, src_memory | written);
                 (dst, dst_memory) = (dst | stages, dst_memory | memory);
             }
             // A write after a read only has to wait: there is nothing to make visible.
             if access.writes() && !history.readers.is_empty() && !history.after_readers.has(*access)
             {
-                src |= history.readers.as_source(self.mesh).0;
+                src |= history.readers.as_source(self.draw_stages).0;
                 dst |= stages;
             }
         }
@@ -129,12 +158,12 @@ impl Tracker {
 
     /// A global barrier covers every buffer, not only those of the pass that needed it.
     fn note_barrier(&mut self, src: (Stages, Memory), dst: (Stages, Memory)) {
-        let mesh = self.mesh;
+        let draw_stages = self.draw_stages;
         // Accesses that wait for the barrier, and those among them that also see what it makes visible.
         let mut waits = Set::default();
         let mut sees = Set::default();
         for access in Access::all() {
-            let (stages, memory) = access.masks(mesh);
+            let (stages, memory) = access.masks(draw_stages);
             if dst.0.contains(stages) {
                 waits = waits.with(access);
                 if dst.1.contains(memory) {
@@ -143,11 +172,11 @@ impl Tracker {
             }
         }
         for history in &mut self.buffers {
-            let (writers, written) = history.writers.as_source(mesh);
+            let (writers, written) = history.writers.as_source(draw_stages);
             if !writers.is_empty() && src.0.contains(writers) && src.1.contains(written) {
                 history.seen_by.0 |= sees.0;
             }
-            let readers = history.readers.as_source(mesh).0;
+            let readers = history.readers.as_source(draw_stages).0;
             if !readers.is_empty() && src.0.contains(readers) {
                 history.after_readers.0 |= waits.0;
             }

@@ -6,6 +6,7 @@ use super::device::Device;
 use super::lent::Location;
 use super::memory::{Buffer, BufferDesc};
 use super::recorder::Recorder;
+use super::tracker::Draws;
 use rara_base::error::Result;
 
 /// The most bytes staged at once. More would gain nothing, since a chunk takes milliseconds; with fewer, submissions would
@@ -79,7 +80,7 @@ impl Device {
     ) -> Result<()> {
         self.submit_and_wait(|cmd| {
             // SAFETY: `cmd` is recording for this device's queue, and both buffers outlive the wait.
-            let mut recorder = unsafe { Recorder::begin(self, cmd, None) };
+            let mut recorder = unsafe { Recorder::begin(self, cmd, Draws::Around, None) };
             let reads = target.location() == Location::Readback;
             recorder.label(if reads { "download" } else { "upload" }, |recorder| {
                 recorder.copy(source, target, &[region]);

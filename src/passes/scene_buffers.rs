@@ -112,7 +112,9 @@ impl SceneBuffers {
     /// does: writes the layer alone into the host's staging memory and records the copies. Nothing waits: frames that were
     /// submitted before show the layer as it was, those that are configured afterwards as it is.
     ///
-    /// **Synchronisation**, **lifetimes**: as for [`upload_with`](Self::upload_with).
+    /// **Synchronisation**, **lifetimes**: as for [`upload_with`](Self::upload_with), but that the copies are ordered behind
+    /// everything earlier in the queue. In another queue than that of the frames, they wait for the semaphores of all frames
+    /// that show the scene.
     ///
     /// # Safety
     /// As for [`upload_with`](Self::upload_with).
@@ -135,7 +137,7 @@ impl SceneBuffers {
         let packed = self.packed(index, gaussians)?;
         packed.write(staging.bytes);
         // SAFETY: the caller vouches for `cmd`, and keeps the buffers alive until it has executed.
-        unsafe { self.copy(cmd, staging.buffer, &[packed.copies(staging.offset)]) };
+        unsafe { self.copy(cmd, staging.buffer, &[packed.copies(staging.offset)], false) };
         self.hold_replaced(index, replaced, &packed);
         Ok(())
     }
@@ -302,11 +304,13 @@ impl SceneBuffers {
     /// and records the copies. Nothing is submitted and nothing waited for, so that a scene can come or be replaced while
     /// frames are in flight; the processor's part may run on another thread than the one that draws.
     ///
-    /// **Synchronisation.** The copies are ordered behind everything earlier in the queue, and nothing is needed after
-    /// them: [`Renderer::prepare`](crate::Renderer::prepare) begins with a barrier that waits for transfers. It may be
-    /// recorded later into the same command buffer, or into one that is submitted later to the same queue. The staging
-    /// memory's writes reach the device with the submission where the memory is host-coherent; else the host flushes the
-    /// range before it submits.
+    /// **Synchronisation.** The copies wait for nothing, as their memory is new, and nothing is needed after them:
+    /// [`Renderer::prepare`](crate::Renderer::prepare) begins with a barrier that waits for transfers. It may be recorded later
+    /// into the same command buffer, or into one that is submitted later to the same queue. Where `cmd` goes to another queue,
+    /// as one for transfers alone, whose family is one of
+    /// [`AdoptDesc::shared_families`](crate::gpu::AdoptDesc::shared_families), the submission of `prepare` waits for a
+    /// semaphore. The staging memory's writes reach the device with the submission where the memory is host-coherent; else
+    /// the host flushes the range before it submits.
     ///
     /// **Lifetimes.** The host leaves the staging range alone, and the buffers that are returned alive, until `cmd` has
     /// executed. The scene that is replaced lives until the last frame that was prepared with it has executed. If `cmd`
@@ -314,8 +318,8 @@ impl SceneBuffers {
     ///
     /// # Safety
     ///
-    /// `cmd` is recording on `device`, outside a rendering scope, and will be submitted to the device's queue, or never;
-    /// `staging` is as [`Staging`] says, and nothing on the device uses its range.
+    /// `cmd` is recording on `device`, outside a rendering scope, and will be submitted to the device's queue or to one of a
+    /// shared family, or never; `staging` is as [`Staging`] says, and nothing on the device uses its range.
     pub unsafe fn upload_with<'a>(
         device: &Device,
         cmd: vk::CommandBuffer,
@@ -336,11 +340,11 @@ impl SceneBuffers {
             begin = end;
         }
         // SAFETY: the caller vouches for `cmd`, and keeps the buffers alive until it has executed.
-        unsafe { buffers.copy(cmd, staging.buffer, &copies) };
+        unsafe { buffers.copy(cmd, staging.buffer, &copies, true) };
         Ok(buffers)
     }
 
-    /// Records copies of layers to their places in the three buffers from a host's buffer.
+    /// Records copies of layers to their places in the three buffers, which may be new, from a host's buffer.
     ///
     /// # Safety
     /// As for [`upload_with`](Self::upload_with); the host's buffer holds the bytes.
@@ -349,10 +353,12 @@ impl SceneBuffers {
         cmd: vk::CommandBuffer,
         source: vk::Buffer,
         copies: &[[vk::BufferCopy; 3]],
+        into_new: bool,
     ) {
         let targets = [&self.gaussians, &self.sh, &self.blocks];
         // SAFETY: the caller vouches for `cmd`, and keeps the buffers alive until it has executed.
-        let mut recorder = unsafe { Recorder::begin(self.gaussians.device(), cmd, None) };
+        let mut recorder =
+            unsafe { Recorder::begin_copies(self.gaussians.device(), cmd, into_new) };
         recorder.label("upload", |recorder| {
             for (index, target) in targets.into_iter().enumerate() {
                 let regions: Vec<_> = copies.iter().map(|layer| layer[index]).collect();

@@ -14,7 +14,7 @@ use crate::passes::{
     self, Buffers, CutPlan, CutResources, FoundSides, Pipelines, SceneBuffers, Sizes,
 };
 use rara_base::error::{Error, Result};
-use rara_gpu::{Bindings, Device, Recorder};
+use rara_gpu::{Bindings, Device, Draws, Recorder};
 use rara_scene::clip::Clip;
 use rara_scene::placement::Placement;
 use rara_scene::settings::Settings;
@@ -63,6 +63,7 @@ use rara_scene::settings::Settings;
 pub struct Cut {
     device: Device,
     bindings: Bindings,
+    draws: Draws,
     placement: Placement,
     pipelines: SharedPipelines,
     state: CutState,
@@ -108,6 +109,7 @@ impl Cut {
         Self {
             device: renderer.device.clone(),
             bindings: renderer.desc.bindings,
+            draws: renderer.desc.draws(),
             placement: renderer.placement,
             pipelines: renderer.pipelines.sharing(),
             state: CutState::default(),
@@ -187,8 +189,8 @@ impl Cut {
     /// eyes' commands wait for them.
     ///
     /// # Safety
-    /// `cmd` is in the recording state, outside a rendering scope, on a queue family with compute, and will be submitted to
-    /// the device's queue before those of the eyes. The scene lives until the commands have executed. The host has waited for
+    /// `cmd` is in the recording state, outside a rendering scope, and will be submitted to the queue of the eyes' own commands
+    /// of [`Renderer::prepare`], before those. The scene lives until the commands have executed. The host has waited for
     /// the frames that [`Renderer`] says.
     ///
     /// # Errors
@@ -210,7 +212,7 @@ impl Cut {
         }
         if plan.gaussians() > 0 {
             // SAFETY: the caller promises that `cmd` is recording, outside a rendering scope.
-            let mut recorder = unsafe { Recorder::begin(&self.device, cmd, None) };
+            let mut recorder = unsafe { Recorder::begin(&self.device, cmd, self.draws, None) };
             let resources = CutResources {
                 pipelines,
                 scene,

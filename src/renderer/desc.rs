@@ -4,7 +4,7 @@ use ash::vk;
 
 use rara_base::error::{Error, Result};
 use rara_base::setters;
-use rara_gpu::{Attachments, Bindings, DepthAttachment, Device, Target};
+use rara_gpu::{Attachments, Bindings, DepthAttachment, Device, Draws, Target};
 use rara_scene::depth::DepthMap;
 
 /// The encoding of the colours in a host's colour attachment. Splats are trained, and blended, in sRGB-encoded colours; the
@@ -62,6 +62,11 @@ setters! {
         /// How many recorded frames may be unfinished at once, from 1 to [`MAX_FRAMES`](Self::MAX_FRAMES);
         /// [`Renderer`](super::Renderer) says what the host promises.
         pub frames_in_flight: u32,
+        /// The queue family of the command buffers that [`Renderer::prepare`](super::Renderer::prepare) records into, where they
+        /// are submitted to another queue than the draws, as one without graphics: one of
+        /// [`AdoptDesc::shared_families`](crate::gpu::AdoptDesc::shared_families), or the device's own. The host then orders
+        /// the two by semaphores, as [`Renderer`](super::Renderer) says. `None` where both are submitted to the device's queue.
+        pub compute_family: Option<u32>,
     }
 }
 
@@ -179,6 +184,7 @@ impl RendererDesc {
             statistics: false,
             reuse: false,
             frames_in_flight: 1,
+            compute_family: None,
         }
     }
 
@@ -225,6 +231,7 @@ impl RendererDesc {
                 Self::MAX_FRAMES
             )));
         }
+        self.check_family(device)?;
         self.check_color(device, self.color_format)?;
         if self.blends_stored_as_light() {
             log::warn!(
@@ -265,6 +272,40 @@ impl RendererDesc {
         }
         self.depth
             .map_or(Ok(()), |depth| self.check_depth(device, depth))
+    }
+
+    /// The draws that the barriers of compute commands are between.
+    pub(super) fn draws(&self) -> Draws {
+        self.compute_family
+            .map_or(Draws::Around, |_| Draws::Elsewhere)
+    }
+
+    /// Checks that the commands of a frame can be recorded for the family that is asked for.
+    fn check_family(&self, device: &Device) -> Result<()> {
+        let Some(family) = self.compute_family else {
+            return Ok(());
+        };
+        let refuse = |what: &str| {
+            Err(Error::Invalid(format!(
+                "RendererDesc::compute_family is {family}, {what}"
+            )))
+        };
+        match device.queue_flags(family) {
+            None => refuse(
+                "which rara's memory is not shared with: name it in AdoptDesc::shared_families",
+            ),
+            Some(flags) if !flags.contains(vk::QueueFlags::COMPUTE) => {
+                refuse("which lacks compute")
+            }
+            Some(flags) if flags.contains(vk::QueueFlags::GRAPHICS) => Ok(()),
+            Some(_) if self.depth.is_some_and(|depth| depth.readable) => refuse(
+                "which lacks graphics, and DepthDesc::readable is set: Vulkan copies depths only in a family with graphics",
+            ),
+            Some(_) if self.statistics => refuse(
+                "which lacks graphics, and RendererDesc::statistics is set, which counts what draws do too",
+            ),
+            Some(_) => Ok(()),
+        }
     }
 
     /// True when splats are tested against a depth that tiles cannot read.

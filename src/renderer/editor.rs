@@ -9,7 +9,7 @@ use crate::passes::{CheckedEdit, LayerEdit, SceneBuffers, edit_needs};
 use crate::types::PlainGaussian;
 use rara_base::counted::counted;
 use rara_base::error::Result;
-use rara_gpu::{Bindings, Buffer, BufferDesc, Device, Location, Recorder};
+use rara_gpu::{Bindings, Buffer, BufferDesc, Device, Draws, Location, Recorder};
 
 /// An editor lets the host's own shaders overwrite the Gaussians of a layer between frames: a scene that bends, a brush that
 /// paints and erases.
@@ -40,12 +40,14 @@ use rara_gpu::{Bindings, Buffer, BufferDesc, Device, Location, Recorder};
 ///
 /// **Synchronisation.** The commands of [`record`](Self::record) begin with a barrier behind all dispatches, draws and copies
 /// that are earlier in the queue, so that the host needs none between the writes of a compute, vertex, mesh or fragment shader
-/// or of a copy, and the edit. [`Renderer::prepare`] begins with such a barrier too. Only before it writes into the buffer
-/// again, the host waits, by a barrier from compute shaders to what writes it, for the edit to have read it.
+/// or of a copy, and the edit. [`Renderer::prepare`] begins with one that waits for edits. Only before it writes into the buffer
+/// again, the host waits, by a barrier from compute shaders to what writes it, for the edit to have read it. With
+/// [`RendererDesc::compute_family`](super::RendererDesc::compute_family) the barriers wait for dispatches and copies alone.
 #[derive(Debug)]
 pub struct LayerEditor {
     device: Device,
     bindings: Bindings,
+    draws: Draws,
     pipelines: SharedPipelines,
     plain: Buffer,
     room: u32,
@@ -74,6 +76,7 @@ impl LayerEditor {
             plain: device.create_buffer(&desc)?,
             device,
             bindings: renderer.desc.bindings,
+            draws: renderer.desc.draws(),
             pipelines: renderer.pipelines.sharing(),
             room: gaussians,
         };
@@ -117,8 +120,8 @@ impl LayerEditor {
     /// be of the Gaussians that were uploaded.
     ///
     /// # Safety
-    /// `cmd` is recording on the renderer's device, outside a rendering scope, on a queue family with compute, and will be
-    /// submitted to the device's queue. Scene and editor live until it has executed. If it is never submitted, the scene is not
+    /// `cmd` is recording on the renderer's device, outside a rendering scope, and will be submitted to the queue of the
+    /// renderer's own commands of [`Renderer::prepare`]. Scene and editor live until it has executed. If it is never submitted, the scene is not
     /// drawn any more.
     ///
     /// # Errors
@@ -139,7 +142,7 @@ impl LayerEditor {
         }
         let bindings = self.compile(scene)?;
         // SAFETY: the caller vouches for `cmd`, and keeps the buffers alive until it has executed.
-        let mut recorder = unsafe { Recorder::begin(&self.device, cmd, None) };
+        let mut recorder = unsafe { Recorder::begin(&self.device, cmd, self.draws, None) };
         let pipelines = self.pipelines.get(bindings);
         checked.record(&mut recorder, pipelines, &self.plain, scene);
         Ok(())

@@ -49,6 +49,8 @@ pub(crate) struct RecordedFrame {
     pub(super) counts: Buffer,
     /// The recorded frame; `None` before the first one, and for one that was never submitted.
     pub(super) decision: Option<Decision>,
+    /// True when a draw of it was recorded.
+    pub(super) is_drawn: bool,
     /// What it uses of a cut of the host's.
     pub(super) cut: Option<Arc<Buffers<CutPlan>>>,
 }
@@ -71,6 +73,7 @@ impl RecordedFrame {
             timer: timing.then(timer).transpose()?,
             counts,
             decision: None,
+            is_drawn: false,
             cut: None,
         })
     }
@@ -105,7 +108,15 @@ impl FramesInFlight {
         self.prepared += 1;
         let slot = &mut self.slots[at];
         slot.decision = Some(decision.clone());
+        slot.is_drawn = false;
         slot
+    }
+
+    /// True when a draw of a frame may be unfinished that the host has not waited for before the next one.
+    pub(super) fn may_be_drawing(&self) -> bool {
+        let finished = self.slot(self.prepared);
+        let unfinished = |(at, slot): (usize, &RecordedFrame)| at != finished && slot.is_drawn;
+        self.slots.iter().enumerate().any(unfinished)
     }
 
     pub(super) fn newest(&self) -> Option<&RecordedFrame> {

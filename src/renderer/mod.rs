@@ -64,7 +64,7 @@ use shared::SharedPipelines;
 ///
 /// **Frames in flight.** Before it configures frame `n`, the host has waited for frame `n - frames_in_flight` (each
 /// `prepare` is a frame, also where two of them are views of one picture). Frames share their working memory: each
-/// begins with a barrier behind everything earlier in the queue, so that none can overwrite what the one before still
+/// begins with a barrier behind what earlier ones may still do, so that none can overwrite what the one before still
 /// reads. Memory that a frame outgrows is freed `frames_in_flight` frames later. Before dropping the renderer, the host
 /// waits for all of its frames.
 ///
@@ -73,13 +73,20 @@ use shared::SharedPipelines;
 /// that is configured while another waits to be prepared takes nothing over from it, whatever [`RendererDesc::reuse`] says.
 /// Where the next frame is configured before this one's slot is free, `frames_in_flight` is one more than the host's slots.
 ///
-/// **Synchronisation.** The commands of `prepare` begin with a global barrier, from all draws, dispatches and copies that
-/// are earlier in the queue to its own. They end with one that makes what they wrote visible to the shaders and indirect
+/// **Synchronisation.** The commands of `prepare` begin with a global barrier, from all dispatches and copies that are
+/// earlier in the queue to its own. It names the shader stages of draws too, the host's own ones included, where one of this
+/// renderer's may be unfinished: with one frame in flight it never does. They end with one that makes what they wrote visible to the shaders and indirect
 /// arguments of `draw`, and the counts to the host. The host needs no barrier between the two, and none at all for the
 /// buffers of the renderer and the scene. `draw` reads those in the vertex or mesh and the fragment stage; it reads and
 /// writes the colour attachment (`COLOR_ATTACHMENT_OUTPUT`) and reads the depth attachment (`EARLY_FRAGMENT_TESTS`,
 /// `LATE_FRAGMENT_TESTS`), whose layout may be read-only. For these the host waits as for any draw of its own.
 /// [`prepare`](Self::prepare) says what the host's depth needs.
+///
+/// **Two queues.** With [`RendererDesc::compute_family`] the commands of `prepare`, and those of a [`Cut`], a [`Picker`] and a
+/// [`LayerEditor`] of the renderer, go to a queue of that family, and the draws to the device's. No barrier names the stages
+/// of a draw then, and the host submits with semaphores: the draws wait for their frame's `prepare`, at `DRAW_INDIRECT` and
+/// the shader stages of a draw, and `prepare` waits for the draws of the frame before, at `COMPUTE_SHADER`, `DRAW_INDIRECT` and
+/// `ALL_TRANSFER`; `ALL_COMMANDS` is right for both. Two renderers that take turns need no more than their own frames'.
 ///
 /// **What recording leaves behind.** `prepare` binds a compute pipeline, `draw` a graphics pipeline; both write push
 /// constants. `draw` sets the viewport. The host binds its own pipelines again, pushes its own constants, and sets all

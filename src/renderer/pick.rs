@@ -173,7 +173,8 @@ impl Picker {
         if let Some(tiles) = &tiles {
             // SAFETY: the caller's promises are those of `prepare`; the tiles' buffers live as the frame's do, and the slot's
             // until its next request or the picker's end, which come after this one has finished.
-            let mut recorder = unsafe { Recorder::begin(&device, cmd, None) };
+            let mut recorder =
+                unsafe { Recorder::begin(&device, cmd, self.renderer.draws(), None) };
             let [begins, pixels] = TilePicture::sizes(rect.extent, TargetFormat::Float);
             let [to, _] = sizes(rect.extent);
             let copy = |size, to| [vk::BufferCopy::default().size(size).dst_offset(to)];

@@ -11,7 +11,7 @@ use crate::passes::{
     tiles,
 };
 use rara_base::error::Result;
-use rara_gpu::{DepthImage, Drawer, Recorder};
+use rara_gpu::{DepthImage, Drawer, Draws, Recorder};
 
 impl Renderer {
     /// Records a frame's stages up to the draw, outside any rendering scope. `depth` is what the host has drawn already, for a
@@ -23,8 +23,8 @@ impl Renderer {
     /// its depths visible to the copy, and its barrier after waits for the copy before the image changes layout or contents.
     ///
     /// # Safety
-    /// `cmd` is in the recording state, outside a rendering scope, on a queue family with compute and graphics, and
-    /// will be submitted to the device's queue, or never. `scene` is the one given to [`configure`](Self::configure)
+    /// `cmd` is in the recording state, outside a rendering scope, and will be submitted to the device's queue, or to one of
+    /// [`RendererDesc::compute_family`](crate::RendererDesc::compute_family) where that is set, or never. `scene` is the one given to [`configure`](Self::configure)
     /// and lives until the commands have executed. `depth` is as its description says, visible to the copy, and lives as
     /// long. The host has waited for the frames that [`Renderer`] says.
     ///
@@ -74,12 +74,14 @@ impl Renderer {
                  which they were configured, and configure again after Renderer::forget",
             );
         }
+        let draws = self.draws();
         let slot = self.frames.begin(&state.decision);
         slot.cut = (!owns_cut).then(|| state.cut.buffers().clone());
         let plan = &state.decision.plan;
         if plan.gaussians() > 0 {
             // SAFETY: the caller promises that `cmd` is recording, outside a rendering scope.
-            let mut recorder = unsafe { Recorder::begin(&self.device, cmd, slot.timer.as_mut()) };
+            let mut recorder =
+                unsafe { Recorder::begin(&self.device, cmd, draws, slot.timer.as_mut()) };
             let copied = depth.zip(plan.occluders).map(|(depth, occluders)| {
                 let to = tiles::occluders(&state.buffers);
                 // SAFETY: the caller promises the image, its layout and that its depths are visible.
@@ -105,6 +107,15 @@ impl Renderer {
             number: self.frames.prepared(),
             state,
         })
+    }
+
+    /// The draws that the next frame's barriers are between.
+    pub(super) fn draws(&self) -> Draws {
+        match self.desc.draws() {
+            // Nobody else draws from its memory.
+            Draws::Around if !self.frames.may_be_drawing() => Draws::After,
+            draws => draws,
+        }
     }
 
     /// Keeps what a frame has left in its buffers for the next one.
@@ -290,8 +301,10 @@ impl Renderer {
         (origin, size): ([f32; 2], [f32; 2]),
         record: impl FnOnce(&mut Drawer<'_>),
     ) {
-        let newest = self.frames.newest_mut();
-        let timer = newest.and_then(|frame| frame.timer.as_mut());
+        let timer = self.frames.newest_mut().and_then(|frame| {
+            frame.is_drawn = true;
+            frame.timer.as_mut()
+        });
         // SAFETY: the caller's promise.
         let mut drawer = unsafe { Drawer::new(&self.device, cmd, timer) };
         drawer.under(self.name.as_deref(), |drawer| {

@@ -99,6 +99,8 @@ pub struct Frames {
     /// The same Gaussians as one layer, stored in each way, and as two.
     stored: Vec<(ShFormat, SceneBuffers)>,
     layered: SceneBuffers,
+    /// The family that frames are prepared for, where they are drawn in another queue.
+    pub compute_family: Option<u32>,
     pub device: Device,
 }
 
@@ -141,6 +143,7 @@ impl Frames {
             camera: common::views(&scene, 1, size)[0],
             stored: formats.map(|format| (format, upload(format))).into(),
             layered: layered.expect("uploads"),
+            compute_family: None,
             scene,
             device,
         }
@@ -167,24 +170,27 @@ impl Frames {
         recorded
     }
 
-    /// Records a frame, its draws into `target` included, and submits nothing.
-    pub fn record(&self, frame: &Frame, target: &Image) {
+    /// Records a frame, with its draws where there is a target, and submits nothing. Returns its commands.
+    pub fn record(&self, frame: &Frame, target: Option<&Image>) -> RecordedCommands {
         self.configured(frame, |renderer, scene, configured| {
             let unsubmitted = self.device.submit_and_wait(|cmd| {
                 // SAFETY: `cmd` is recording outside rendering, and what is recorded is never executed. The scope is opened
                 // and closed around the draw, on an attachment of the renderer's format.
                 unsafe {
                     let prepared = renderer.prepare(cmd, scene, None, configured)?;
-                    target.begin_rendering(cmd, [0.0; 4]);
-                    Drawer::new(&self.device, cmd, None).viewport(target.extent().into());
-                    renderer.draw(cmd, [0.0; 2], &prepared)?;
-                    target.end_rendering(cmd);
+                    if let Some(target) = target {
+                        target.begin_rendering(cmd, [0.0; 4]);
+                        Drawer::new(&self.device, cmd, None).viewport(target.extent().into());
+                        renderer.draw(cmd, [0.0; 2], &prepared)?;
+                        target.end_rendering(cmd);
+                    }
                 }
                 Err::<(), _>(Error::Invalid("recorded".into()))
             });
             let error = unsubmitted.expect_err("nothing is submitted").to_string();
             assert!(error.ends_with("recorded"), "{}: {error}", frame.name);
         });
+        self.device.recorded()
     }
 
     /// Configures a frame after those that it is to reuse, and has each recorded. Nothing is recorded of one for which the host
@@ -196,7 +202,8 @@ impl Frames {
     ) {
         let mut desc = RendererDesc::new(FORMAT)
             .reuse(true)
-            .bindings(self.bindings);
+            .bindings(self.bindings)
+            .compute_family(self.compute_family);
         match frame.host {
             Host::Plain => {}
             Host::HasDepth => {

@@ -14,7 +14,7 @@ use rara::{
     RendererDesc, SceneBuffers, Settings, ShFormat,
 };
 use rara_gpu::{
-    Bindings, Buffer, BufferAccess, BufferUse, ComputeDesc, ComputePipeline, Device, Groups,
+    Bindings, Buffer, BufferAccess, BufferUse, ComputeDesc, ComputePipeline, Device, Draws, Groups,
     Recorder, Shader,
 };
 
@@ -129,7 +129,7 @@ fn a_scene_bends_while_frames_are_in_flight() {
                     let params = [to as u32, (to >> 32) as u32, count, amount.to_bits()];
                     // SAFETY: `cmd` is recording outside rendering, and all is kept until it has been waited for.
                     unsafe {
-                        let mut recorder = Recorder::begin(&device, cmd, None);
+                        let mut recorder = Recorder::begin(&device, cmd, Draws::Around, None);
                         let groups = Groups::Count(count.div_ceil(64));
                         recorder.dispatch(&bend, &[&source], &params, groups);
                         let edit = LayerEdit::of(0..count).positions(true).rotations(true);

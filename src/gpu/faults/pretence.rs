@@ -15,6 +15,8 @@ pub enum Pretence {
     Vulkan12Alone,
     Without(&'static str),
     WithoutGraphics,
+    /// One with a second queue family, which only computes and copies.
+    SecondFamily,
     WithoutExtensions,
     WithoutSubgroups,
     ExtensionsFail,
@@ -82,9 +84,19 @@ pub(super) unsafe extern "system" fn queue_families(
     let real = driver()
         .fp_v1_0()
         .get_physical_device_queue_family_properties;
-    // SAFETY: the caller's arguments, passed on; it has made room for `count`.
+    // SAFETY: the caller's arguments, passed on; it has made room for `count`, and real devices have at least one family.
     unsafe {
+        let second = u32::from(pretence() == Some(Pretence::SecondFamily));
+        if !out.is_null() {
+            *count -= second;
+        }
         real(physical, count, out);
+        if second == 1 && !out.is_null() {
+            let mut computes = *out;
+            computes.queue_flags &= !vk::QueueFlags::GRAPHICS;
+            out.add(*count as usize).write(computes);
+        }
+        *count += second;
         if pretence() == Some(Pretence::WithoutGraphics) && !out.is_null() {
             for family in std::slice::from_raw_parts_mut(out, *count as usize) {
                 family.queue_flags &= !vk::QueueFlags::GRAPHICS;

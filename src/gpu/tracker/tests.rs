@@ -2,7 +2,6 @@
 
 use super::Access::*;
 use super::*;
-use crate::access::{DRAW_STAGES, MESH_STAGES};
 use ash::vk::Handle;
 
 fn buffer(number: u64) -> vk::Buffer {
@@ -23,7 +22,7 @@ fn parts(barrier: Option<vk::MemoryBarrier2<'_>>) -> Option<(Stages, Memory, Sta
 
 #[test]
 fn the_opening_waits_for_draws_that_read_and_passes_that_wrote() {
-    let opening = Tracker::new(true).opening();
+    let opening = Tracker::new(true, Draws::Around).opening();
     assert!(
         opening
             .src_stage_mask
@@ -41,8 +40,31 @@ fn the_opening_waits_for_draws_that_read_and_passes_that_wrote() {
 }
 
 #[test]
+fn the_opening_waits_for_no_draw_that_has_been_waited_for() {
+    let [around, after] =
+        [Draws::Around, Draws::After].map(|draws| Tracker::new(true, draws).opening());
+    assert_eq!(after.src_stage_mask, around.src_stage_mask & !DRAW_STAGES);
+    assert_eq!(after.src_access_mask, around.src_access_mask);
+    // What copies and edits have written is visible to draws without a barrier of their own.
+    assert_eq!(after.dst_stage_mask, around.dst_stage_mask);
+    assert_eq!(after.dst_access_mask, around.dst_access_mask);
+}
+
+#[test]
+fn no_barrier_is_between_draws_in_another_queue() {
+    let mut tracker = Tracker::new(true, Draws::Elsewhere);
+    let opening = tracker.opening();
+    let stages = opening.src_stage_mask | opening.dst_stage_mask;
+    assert!(!stages.intersects(DRAW_STAGES));
+    assert!(stages.contains(Stages::COMPUTE_SHADER | Stages::DRAW_INDIRECT | Stages::ALL_TRANSFER));
+    tracker.pass(&[(buffer(1), ComputeWrite)]);
+    let barrier = tracker.pass(&[(buffer(1), IndirectRead)]).unwrap();
+    assert_eq!(barrier.dst_stage_mask, Stages::DRAW_INDIRECT);
+}
+
+#[test]
 fn first_uses_and_reads_after_reads_need_nothing() {
-    let mut tracker = Tracker::new(true);
+    let mut tracker = Tracker::new(true, Draws::Around);
     assert!(
         tracker
             .pass(&[(buffer(1), ComputeRead), (buffer(2), ComputeWrite)])
@@ -57,7 +79,7 @@ fn first_uses_and_reads_after_reads_need_nothing() {
 
 #[test]
 fn read_after_write() {
-    let mut tracker = Tracker::new(true);
+    let mut tracker = Tracker::new(true, Draws::Around);
     tracker.pass(&[(buffer(1), TransferWrite)]);
     let expected = (
         Stages::ALL_TRANSFER,
@@ -77,7 +99,7 @@ fn read_after_write() {
 
 #[test]
 fn each_kind_of_reader_waits_once() {
-    let mut tracker = Tracker::new(false);
+    let mut tracker = Tracker::new(false, Draws::Around);
     tracker.pass(&[(buffer(1), ComputeWrite)]);
     assert!(tracker.pass(&[(buffer(1), ComputeRead)]).is_some());
     let draw = parts(tracker.pass(&[(buffer(1), DrawRead), (buffer(1), IndirectRead)])).unwrap();
@@ -99,7 +121,7 @@ fn each_kind_of_reader_waits_once() {
 
 #[test]
 fn write_after_read_waits_without_memory() {
-    let mut tracker = Tracker::new(true);
+    let mut tracker = Tracker::new(true, Draws::Around);
     tracker.pass(&[(buffer(1), TransferRead)]);
     let expected = (
         Stages::ALL_TRANSFER,
@@ -115,7 +137,7 @@ fn write_after_read_waits_without_memory() {
 
 #[test]
 fn write_after_write() {
-    let mut tracker = Tracker::new(true);
+    let mut tracker = Tracker::new(true, Draws::Around);
     tracker.pass(&[(buffer(1), ComputeReadWrite)]);
     let again = parts(tracker.pass(&[(buffer(1), ComputeReadWrite)])).unwrap();
     assert_eq!(again.1, Memory::SHADER_STORAGE_WRITE);
@@ -131,7 +153,7 @@ fn write_after_write() {
 
 #[test]
 fn one_barrier_serves_all_buffers() {
-    let mut tracker = Tracker::new(true);
+    let mut tracker = Tracker::new(true, Draws::Around);
     tracker.pass(&[(buffer(1), ComputeWrite), (buffer(2), ComputeWrite)]);
     assert!(tracker.pass(&[(buffer(1), ComputeRead)]).is_some());
     assert!(tracker.pass(&[(buffer(2), ComputeRead)]).is_none());
@@ -139,7 +161,7 @@ fn one_barrier_serves_all_buffers() {
 
 #[test]
 fn a_barrier_for_reads_does_not_make_writes_visible() {
-    let mut tracker = Tracker::new(true);
+    let mut tracker = Tracker::new(true, Draws::Around);
     tracker.pass(&[(buffer(1), ComputeRead), (buffer(2), ComputeWrite)]);
     // Same stages, but the wait for buffer 1's reader carries no memory.
     assert!(tracker.pass(&[(buffer(1), ComputeWrite)]).is_some());
@@ -148,7 +170,7 @@ fn a_barrier_for_reads_does_not_make_writes_visible() {
 
 #[test]
 fn a_buffer_read_and_written_by_one_pass_keeps_both() {
-    let mut tracker = Tracker::new(true);
+    let mut tracker = Tracker::new(true, Draws::Around);
     assert!(
         tracker
             .pass(&[(buffer(1), ComputeWrite), (buffer(1), IndirectRead)])
@@ -161,7 +183,7 @@ fn a_buffer_read_and_written_by_one_pass_keeps_both() {
 
 #[test]
 fn a_reader_after_the_barrier_is_waited_for_again() {
-    let mut tracker = Tracker::new(true);
+    let mut tracker = Tracker::new(true, Draws::Around);
     tracker.pass(&[(buffer(1), ComputeRead), (buffer(2), ComputeRead)]);
     assert!(tracker.pass(&[(buffer(1), ComputeWrite)]).is_some());
     assert!(tracker.pass(&[(buffer(2), ComputeRead)]).is_none());
@@ -170,7 +192,7 @@ fn a_reader_after_the_barrier_is_waited_for_again() {
 
 #[test]
 fn a_barrier_never_names_mesh_stages_where_there_are_none() {
-    let mut tracker = Tracker::new(false);
+    let mut tracker = Tracker::new(false, Draws::Around);
     assert!(!tracker.opening().dst_stage_mask.intersects(MESH_STAGES));
     tracker.pass(&[(buffer(1), ComputeWrite)]);
     let barrier = tracker.pass(&[(buffer(1), DrawRead)]).unwrap();
@@ -189,7 +211,7 @@ fn conflict(a: &Use, b: &Use) -> bool {
 /// The oracle, straight from the specification: one barrier between two uses covers both, or each covers a use
 /// between them.
 fn ordered(a: &Use, b: &Use, uses: &[Use], barriers: &Barriers) -> bool {
-    let ((from, _, written), (to, seen)) = (a.2.row(true), b.2.masks(true));
+    let ((from, _, written), (to, seen)) = (a.2.row(DRAW_STAGES), b.2.masks(DRAW_STAGES));
     let direct = barriers[a.0 + 1..=b.0].iter().flatten().any(|barrier| {
         barrier.src_stage_mask.contains(from)
             && barrier.src_access_mask.contains(written)
@@ -221,7 +243,7 @@ proptest::proptest! {
             proptest::collection::vec((0_u64..12, 0..Access::all().count()), 1..4), 1..7)
     ) {
         let names: Vec<Access> = Access::all().collect();
-        let mut tracker = Tracker::new(true);
+        let mut tracker = Tracker::new(true, Draws::Around);
         let mut uses: Vec<Use> = Vec::new();
         let mut barriers = Barriers::new();
         for (at, pass) in passes.iter().enumerate() {

@@ -8,7 +8,7 @@ use rara::{Error, Result};
 use rara_base::limits::{TILE_HEIGHT, TILE_WIDTH};
 use rara_gpu::{
     Bindings, Buffer, BufferAccess, BufferDesc, BufferUse, ComputeDesc, ComputePipeline, Device,
-    Groups, Location, Recorder, Shader, Timer,
+    Draws, Groups, Location, Recorder, Shader, Timer,
 };
 
 /// Splats that cover every tile, and their opacity: each is above 1/255 everywhere, and the last still gets light.
@@ -109,7 +109,8 @@ impl Rates {
         let begin = Instant::now();
         self.device.submit_and_wait(|cmd| {
             // SAFETY: `cmd` is recording on this device outside rendering, and what it uses outlives the wait.
-            let mut recorder = unsafe { Recorder::begin(&self.device, cmd, Some(&mut timer)) };
+            let mut recorder =
+                unsafe { Recorder::begin(&self.device, cmd, Draws::After, Some(&mut timer)) };
             recorder.pass("rate", record);
             Ok(())
         })?;

@@ -6,7 +6,7 @@ use glam::{Quat, Vec3};
 use super::*;
 use crate::passes::sh_storage;
 use crate::types::{Block, Gaussian, PlainGaussian};
-use rara_gpu::{Bindings, BufferDesc, Device, Location, testing};
+use rara_gpu::{Bindings, BufferDesc, Device, Draws, Location, testing};
 use rara_scene::{Gaussians, Kind, generate, sh_coefficients};
 
 /// A scene on the device, of one layer, and the order of its Gaussians there.
@@ -46,7 +46,7 @@ impl<'a> Edited<'a> {
         let checked = CheckedEdit::new(&self.scene, 0, edit, edit.count).expect("it fits");
         let done = self.device.submit_and_wait(|cmd| {
             // SAFETY: `cmd` is recording, and everything outlives the wait for it.
-            let mut recorder = unsafe { Recorder::begin(self.device, cmd, None) };
+            let mut recorder = unsafe { Recorder::begin(self.device, cmd, Draws::Around, None) };
             checked.record(&mut recorder, &self.pipelines, &buffer, &mut self.scene);
             Ok(())
         });

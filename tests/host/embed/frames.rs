@@ -54,7 +54,7 @@ fn frames_in_flight_show_the_headless_pictures_over_what_the_host_has_painted() 
 }
 
 /// A clip that moves, stands still and moves back before a camera that stands still, then another camera.
-fn sweep(scene: &Gaussians) -> Vec<Frame> {
+pub(super) fn sweep(scene: &Gaussians) -> Vec<Frame> {
     let cameras = common::views(scene, 3, (VIEW.width, VIEW.height));
     let (low, high) = rara::scene::extent_along(scene, glam::DVec3::X);
     let steps = [

@@ -5,6 +5,7 @@ mod ahead;
 mod frames;
 mod linear;
 mod memory;
+mod queues;
 mod refused;
 mod reserve;
 mod viewport;
@@ -86,11 +87,16 @@ impl Engine {
     /// Begins the frame that is configured and prepares it.
     fn prepare(&mut self) -> vk::CommandBuffer {
         let cmd = self.host.begin().expect("begins");
+        self.prepare_in(cmd);
+        cmd
+    }
+
+    /// Prepares the frame that is configured.
+    fn prepare_in(&mut self, cmd: vk::CommandBuffer) {
         let configured = self.configured.take().expect("it was configured");
         // SAFETY: `cmd` is recording outside rendering, and every test waits before it drops the scene.
         let prepared = unsafe { self.renderer.prepare(cmd, &self.scene, None, configured) };
         self.prepared = Some(prepared.expect("prepares"));
-        cmd
     }
 
     /// Draws the frame that is prepared, inside the host's rendering.
@@ -103,6 +109,11 @@ impl Engine {
     /// Records and submits the frame that is configured. The splats go to `at`.
     fn record(&mut self, at: vk::Offset2D) {
         let cmd = self.prepare();
+        self.record_draw(cmd, at);
+    }
+
+    /// Records the draw of the frame that is prepared, and submits it.
+    fn record_draw(&mut self, cmd: vk::CommandBuffer, at: vk::Offset2D) {
         self.host.begin_rendering(vk::Rect2D {
             offset: at,
             extent: VIEW,

@@ -33,7 +33,7 @@ fn draw_half(device: &Device, front: &Shader, bindings: Bindings) {
     let colour = [0.25_f32, 0.5, 0.75, 1.0];
     let frame = |cmd| {
         // SAFETY: `cmd` is recording on `device`, and everything used outlives the wait.
-        let mut recorder = unsafe { Recorder::begin(device, cmd, Some(&mut timer)) };
+        let mut recorder = unsafe { Recorder::begin(device, cmd, Draws::Around, Some(&mut timer)) };
         recorder.pass("prepare", |recorder| {
             recorder.update(
                 &corners,

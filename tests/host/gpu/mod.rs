@@ -149,7 +149,7 @@ fn read(device: &Device, buffer: &Buffer, count: usize) -> Vec<u32> {
 fn record(device: &Device, timer: Option<&mut Timer>, passes: impl FnOnce(&mut Recorder<'_>)) {
     let done = device.submit_and_wait(|cmd| {
         // SAFETY: `cmd` is recording on `device`, and the passes use only what outlives this call, which waits.
-        passes(&mut unsafe { Recorder::begin(device, cmd, timer) });
+        passes(&mut unsafe { Recorder::begin(device, cmd, Draws::Around, timer) });
         Ok(())
     });
     done.unwrap();

@@ -99,7 +99,7 @@ pub unsafe extern "C" fn rara_cut_bytes(cut: *const RaraCut) -> u64 {
     number(cut, "cut", |cut| cut.0.bytes())
 }
 
-/// Frees a cut's memory; null is ignored.
+/// Frees a cut's memory; null is ignored. The host has waited for the frames that show it, or calls rara_device_destroy_after.
 ///
 /// # Safety
 /// `cut` is null, or alive and not used any more, not even by the device.

@@ -9,7 +9,7 @@ use rara::gpu::{AdoptDesc, Device, DeviceShape};
 use rara::{Error, Result};
 
 use crate::boundary::{RaraResult, Versioned, guard, invalid, list, read, versioned, write};
-use crate::handles::{create, destroy, number};
+use crate::handles::{alive, create, destroy, end, number};
 use crate::lent::{Lender, RaraAllocate, RaraFree};
 
 /// `vkGetInstanceProcAddr`, or null.
@@ -189,6 +189,51 @@ pub unsafe extern "C" fn rara_device_adopt(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_device_bytes(device: *const RaraDevice) -> u64 {
     number(device, "device", |device| device.0.device_bytes())
+}
+
+/// Destroys what frames in flight may still use, when a fence is signalled: a RaraSceneBuffers, a RaraRenderer, a RaraFrame, a
+/// RaraCut, a RaraPicker or a RaraLayerEditor that was made from `device`. Its handle ends at once; null is ignored.
+/// rara_device_destroy_finished destroys it afterwards, and until then it keeps the device, so that a host calls that once more
+/// before rara_device_destroy. RARA_ERROR_INVALID for what is not alive; nothing is destroyed then.
+///
+/// # Safety
+/// `fence` is of the VkDevice, and belongs to a submission that is unfinished or yet to come, behind all that uses the object. It
+/// lives until the object has been destroyed; it may be reset and submitted again before.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_device_destroy_after(
+    device: *const RaraDevice,
+    object: *mut c_void,
+    fence: vk::Fence,
+) -> RaraResult {
+    guard(|| {
+        let device = alive(device, "device")?;
+        if fence == vk::Fence::null() {
+            return invalid("fence is null");
+        }
+        if !object.is_null() {
+            device
+                .0
+                .drop_after(end::<RaraDevice>(object, "object")?, fence);
+        }
+        Ok(())
+    })
+}
+
+/// Destroys what was given to rara_device_destroy_after and whose fence is signalled, or all of it where the device is lost.
+/// Nothing waits. `*left`, unless `left` is null, becomes how many objects are still kept. No other thread resets one of the
+/// fences meanwhile.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_device_destroy_finished(
+    device: *const RaraDevice,
+    left: *mut usize,
+) -> RaraResult {
+    guard(|| {
+        let kept = alive(device, "device")?.0.drop_finished();
+        if let Some(left) = left.as_mut() {
+            *left = kept;
+        }
+        Ok(())
+    })
 }
 
 /// Gives the device back; the VkDevice lives on. What was made from the RaraDevice may be destroyed later, but before the

@@ -3,6 +3,7 @@
 
 use std::any::{Any, TypeId, type_name};
 use std::collections::HashMap;
+use std::ffi::c_void;
 use std::ops::{Deref, DerefMut};
 use std::ptr::without_provenance_mut;
 use std::sync::{Arc, Condvar, LazyLock, Mutex, MutexGuard, PoisonError};
@@ -13,7 +14,7 @@ use rara::{Error, Result};
 use crate::boundary::{RaraResult, exclusive, guard, invalid};
 
 /// What a handle stands for.
-type Object = Arc<dyn Any + Send + Sync>;
+pub(crate) type Object = Arc<dyn Any + Send + Sync>;
 
 /// The objects that are alive.
 #[derive(Default)]
@@ -106,7 +107,7 @@ pub(crate) fn alive<T: Send + Sync + 'static>(
     handle: *const T,
     name: &str,
 ) -> Result<SharedHandle<T>> {
-    let mut handles = wait_for(handle, name, |_| true)?;
+    let mut handles = wait_for::<T>(handle.addr(), name, |_| true)?;
     let place = handles.place(handle.addr());
     place.users += 1;
     let object = place.object.clone().expect("nobody has it to himself");
@@ -122,7 +123,7 @@ pub(crate) fn alone<T: Send + Sync + 'static>(
     handle: *mut T,
     name: &str,
 ) -> Result<ExclusiveHandle<T>> {
-    let mut handles = wait_for(handle, name, |place| place.users == 0)?;
+    let mut handles = wait_for::<T>(handle.addr(), name, |place| place.users == 0)?;
     let place = handles.place(handle.addr());
     // Something else may have kept it.
     let is_kept = place.object.as_mut().and_then(Arc::get_mut).is_none();
@@ -136,18 +137,32 @@ pub(crate) fn alone<T: Send + Sync + 'static>(
     })
 }
 
+/// Ends a handle of any kind but `Other`, when no call uses it any more, and returns what it stood for.
+pub(crate) fn end<Other: 'static>(handle: *mut c_void, name: &str) -> Result<Object> {
+    let is_other = |place: &Place| place.kind == TypeId::of::<Other>();
+    if handles().objects.get(&handle.addr()).is_some_and(is_other) {
+        return invalid(format!("{name} is a {}", kind_name::<Other>()));
+    }
+    let mut handles = wait_for::<dyn Any>(handle.addr(), name, |place| place.users == 0)?;
+    let place = handles.objects.remove(&handle.addr());
+    drop(handles);
+    ENDED.notify_all();
+    let object = place.and_then(|place| place.object);
+    Ok(object.expect("it was found, and nobody has it to himself"))
+}
+
 /// Waits until a handle's object is in its place, and ready.
-fn wait_for<T: 'static>(
-    handle: *const T,
+fn wait_for<T: ?Sized + 'static>(
+    number: usize,
     name: &str,
     is_ready: impl Fn(&Place) -> bool,
 ) -> Result<MutexGuard<'static, Handles>> {
-    if handle.is_null() {
+    if number == 0 {
         return invalid(format!("{name} is null"));
     }
     let mut handles = handles();
     loop {
-        let Some(place) = handles.objects.get(&handle.addr()) else {
+        let Some(place) = handles.objects.get(&number) else {
             return not_alive::<T, _>(name);
         };
         check_kind::<T>(place.kind, name)?;
@@ -260,15 +275,23 @@ impl<T: Send + Sync> Drop for ExclusiveHandle<T> {
     }
 }
 
-fn check_kind<T: 'static>(kind: TypeId, name: &str) -> Result<()> {
-    if kind == TypeId::of::<T>() {
+/// Refuses a handle of another kind than `T`, which may be that of any handle.
+fn check_kind<T: ?Sized + 'static>(kind: TypeId, name: &str) -> Result<()> {
+    if [kind, TypeId::of::<dyn Any>()].contains(&TypeId::of::<T>()) {
         return Ok(());
     }
     not_alive::<T, _>(name)
 }
 
-fn not_alive<T, R>(name: &str) -> Result<R> {
-    let kind = type_name::<T>().rsplit("::").next().unwrap_or_default();
+fn kind_name<T: ?Sized + 'static>() -> &'static str {
+    match TypeId::of::<T>() == TypeId::of::<dyn Any>() {
+        true => "handle",
+        false => type_name::<T>().rsplit("::").next().unwrap_or_default(),
+    }
+}
+
+fn not_alive<T: ?Sized + 'static, R>(name: &str) -> Result<R> {
+    let kind = kind_name::<T>();
     invalid(format!(
         "{name} is no {kind} that is alive: it was destroyed, or no function of rara's has made it"
     ))

@@ -196,7 +196,7 @@ pub unsafe extern "C" fn rara_picker_read(
     })
 }
 
-/// Ends a picker; null is ignored. The device is done with its requests.
+/// Ends a picker; null is ignored. The device is done with its requests, or the host calls rara_device_destroy_after.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_picker_destroy(picker: *mut RaraPicker) {
     destroy(picker);

@@ -12,6 +12,7 @@ use gpu_allocator::vulkan::Allocator;
 
 use super::account::Account;
 use super::commands::Commands;
+use super::deferred::Deferred;
 use super::desc::AdoptDesc;
 use super::devices::DeviceInfo;
 use super::instance::Instance;
@@ -55,6 +56,8 @@ pub(super) struct Inner {
     /// The host's own source of memory, which takes the allocator's place.
     source: Option<Arc<dyn MemorySource>>,
     account: Account,
+    /// What is dropped when a fence is signalled.
+    pub(super) deferred: Mutex<Vec<Deferred>>,
     /// Idle command buffers of [`Device::submit_and_wait`].
     pub(super) idle: Mutex<Vec<Submission>>,
     /// `None` for a host's device, which is never destroyed here. Shared with a window's surface.
@@ -134,6 +137,7 @@ impl Device {
                 allocator: Some(allocator),
                 source: desc.memory,
                 account: Account::default(),
+                deferred: Mutex::new(Vec::new()),
                 idle: Mutex::new(Vec::new()),
                 owned,
                 #[cfg(feature = "lab")]

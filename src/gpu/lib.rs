@@ -13,6 +13,7 @@ mod allocation;
 mod attachments;
 mod clock;
 mod commands;
+mod deferred;
 mod desc;
 mod device;
 mod devices;

@@ -66,7 +66,7 @@ use shared::SharedPipelines;
 /// `prepare` is a frame, also where two of them are views of one picture). Frames share their working memory: each
 /// begins with a barrier behind what earlier ones may still do, so that none can overwrite what the one before still
 /// reads. Memory that a frame outgrows is freed `frames_in_flight` frames later. Before dropping the renderer, the host
-/// waits for all of its frames.
+/// waits for all of its frames, or gives it to [`Device::drop_after`].
 ///
 /// **Frames that overlap.** A frame is recorded with what it was configured with, whatever is configured in between: a host
 /// may configure the next frame while it records this one. Frames are prepared in the order in which they are configured. One

@@ -76,6 +76,48 @@ fn what_was_destroyed_is_refused_and_the_device_is_released_at_last() {
         };
         assert_ok(configure(scene));
 
+        // What is to go after a fence is refused at once, and goes when the fence is signalled.
+        let mut last = null_mut();
+        let layer = one_layer(gaussians);
+        assert_ok(rara_scene_buffers_upload(
+            device, &layer, 1, format, &mut last,
+        ));
+        let fence = ours
+            .device
+            .create_fence(&Default::default(), None)
+            .expect("a fence");
+        let (before, mut left) = (rara_device_bytes(device), 0);
+        assert_ok(rara_device_destroy_after(device, null_mut(), fence));
+        assert_ok(rara_device_destroy_after(device, last.cast(), fence));
+        for object in [last.cast(), (&raw mut left).cast()] {
+            let failed = rara_device_destroy_after(device, object, fence);
+            assert_fails(
+                failed,
+                RARA_ERROR_INVALID,
+                "object is no handle that is alive",
+            );
+        }
+        let failed = rara_device_destroy_after(device, device.cast(), fence);
+        assert_fails(failed, RARA_ERROR_INVALID, "object is a RaraDevice");
+        let failed = rara_device_destroy_after(device, scene.cast(), vk::Fence::null());
+        assert_fails(failed, RARA_ERROR_INVALID, "fence is null");
+        assert_eq!(
+            rara_scene_buffers_layer_count(last),
+            0,
+            "its handle has ended"
+        );
+        assert_ok(rara_device_destroy_finished(device, &mut left));
+        assert_eq!((left, rara_device_bytes(device)), (1, before));
+        ours.device
+            .queue_submit2(ours.queue, &[], fence)
+            .expect("submits");
+        ours.device
+            .wait_for_fences(&[fence], true, u64::MAX)
+            .expect("waits");
+        assert_ok(rara_device_destroy_finished(device, null_mut()));
+        assert!(rara_device_bytes(device) < before);
+        ours.device.destroy_fence(fence, None);
+
         rara_gaussians_destroy(gaussians);
         let mut again = null_mut();
         let failed =

@@ -2,6 +2,7 @@
 //! targets and two frames in flight; the pictures must be the headless ones, over what the host has painted.
 
 mod ahead;
+mod ending;
 mod frames;
 mod linear;
 mod memory;

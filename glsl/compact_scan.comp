@@ -60,6 +60,7 @@ void main() {
         counts.at[0].part_groups = uvec4(0u);
         counts.at[0].row_groups = uvec4(0u);
         counts.at[0].macro_pairs = 0u;
+        counts.at[0].excess_pairs = 0u;
         counts.at[0].pair_groups = uvec4(0u);
         counts.at[0].batch_groups = uvec4(0u);
         counts.at[0].tile_groups = uvec4(0u);

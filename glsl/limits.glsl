@@ -95,7 +95,7 @@ const uint MACRO_RANGE_GROUP_SIZE = 64u;
 // Most splats of a macro-tile that a workgroup lists the tiles of: a batch.
 const uint BATCH_SPLATS = 512u;
 // Consecutive splats of a workgroup that writes coarse lists, 32 for each word of their bits.
-const uint COARSE_GROUP_SIZE = 256u;
+const uint COARSE_GROUP_SIZE = RADIX_GROUP_SIZE;
 // The most rows and columns of cells of coarse lists together: a workgroup holds the bits of its splats in 8 KiB.
 const uint MOST_CELLS = 256u;
 // Workgroup size of the spans of tiles, of which one invocation owns a run of consecutive splats.

@@ -26,7 +26,7 @@ void main() {
     uint all = capped_total(my_all);
     bool has_room = all <= EYE.room.pair_capacity;
     if (p == 0u && local == 0u) {
-        counts.at[0].pairs = has_room ? 0u : all;
+        counts.at[0].excess_pairs = has_room ? 0u : all;
         counts.at[0].macro_pairs = has_room ? all : 0u;
         uint partitions = has_room ? (all + RADIX_PARTITION - 1u) / RADIX_PARTITION : 0u;
         counts.at[0].pair_groups = uvec4(partitions, 1u, 1u, 0u);

@@ -1,9 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // A workgroup a row of tiles finds where the splats of each of its tiles begin, and lists the tiles that hold any: first those
-// that need no code for several surfaces, and from the list's end on the others. The first workgroup finds whether all pairs
-// have room.
-#include "coarse.glsl"
+// that need no code for several surfaces, and from the list's end on the others. Where not all pairs have room, the workgroups write
+// coarse lists instead.
 #include "macro_tiles.glsl"
 #include "workgroup_sum.glsl"
 
@@ -16,7 +15,12 @@ BUFFER(, 1, FrameCounts, counts)
 BUFFER(readonly, 2, uvec4, row_sums)
 BUFFER(, 3, uint, tile_begins)
 BUFFER(writeonly, 4, uint, tile_list)
+BUFFER(readonly, 5, uint, order)
+BUFFER(readonly, 6, uvec4, tile_masks)
+BUFFER(writeonly, 7, uint, tile_splats)
 #include "room.glsl"
+const bool RECTS = true;
+#include "coarse_lists.glsl"
 
 shared uvec3 row_totals[RADIX_GROUP_SIZE];
 shared uvec3 totals_of_rows[SUM_ROWS];
@@ -47,17 +51,32 @@ uint kind_of(uint marked_count) {
 }
 
 void write_commands(uint pairs, uint filled, uint several) {
-    // Where the macro-tiles' pairs had no room, it is known already how many are needed.
-    if (!decide_room(max(pairs, counts.at[0].pairs))) {
+    bool has_room = decide_room(pairs);
+    tile_begins.at[EYE.tiles.tile_count] = has_room ? pairs : EYE.tiles.tile_count;
+    tile_begins.at[cell_side_place()] = has_room ? 0u : EYE.room.cell_side;
+    tile_begins.at[cell_words_place()] = coarse_words();
+    if (!has_room) {
         filled = EYE.tiles.tile_count;
         several = SEVERAL ? filled : 0u;
     }
-    tile_begins.at[EYE.tiles.tile_count] = pairs;
-    tile_begins.at[cell_side_place()] = 0u;
     tile_list.at[EYE.tiles.tile_count] = filled - several;
     tile_list.at[EYE.tiles.tile_count + 1u] = several;
     counts.at[0].tile_groups = groups(filled - several, 1u);
     counts.at[0].several_tile_groups = groups(several, 1u);
+}
+
+// The row's part of coarse lists, in which all tiles are listed in their order.
+void write_coarse(uint row) {
+    uint groups = (counts.at[0].mesh_groups.w + COARSE_GROUP_SIZE - 1u) / COARSE_GROUP_SIZE;
+    for (uint group = row; group < groups; group += tile_rows()) {
+        write_coarse_lists(group);
+        barrier();
+    }
+    for (uint column = gl_LocalInvocationIndex; column < EYE.tiles.tile_columns; column += COARSE_GROUP_SIZE) {
+        uint tile = row * EYE.tiles.tile_columns + column;
+        tile_begins.at[tile] = tile;
+        tile_list.at[tile] = tile;
+    }
 }
 
 void main() {
@@ -70,11 +89,17 @@ void main() {
         my_before += i < row * macro_columns() ? sum : uvec3(0u);
         my_all = uvec3(capped_sum(my_all.x, sum.x), my_all.yz + sum.yz);
     }
+    // Where the macro-tiles' pairs had no room, it is known already how many are needed.
+    uint pairs = max(capped_total(my_all.x), counts.at[0].excess_pairs);
     if (row == 0u) {
-        uvec3 all = uvec3(capped_total(my_all.x), totals_of(my_all).yz);
+        uvec3 all = totals_of(my_all);
         if (local == 0u) {
-            write_commands(all.x, all.y, all.z);
+            write_commands(pairs, all.y, all.z);
         }
+    }
+    if (pairs > EYE.room.pair_capacity) {
+        write_coarse(row);
+        return;
     }
     uvec3 before = totals_of(my_before);
     uint place = before.x;

@@ -236,7 +236,7 @@ struct FrameCounts {
     uint macro_pairs; // pairs of macro-tile and splat that have room; some of them may hold no tile
     uint long_records; // cut splats that more surfaces cut than a record has room for
     uint long_strides; // what their long records take; where there is less, they are weighed by what their records have room for
-    uint pad; // unused
+    uint excess_pairs; // pairs of macro-tile and splat where they have no room, or 0
 };
 
 const uint PROJECTION_PERSPECTIVE = 0u;

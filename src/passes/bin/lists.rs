@@ -4,7 +4,7 @@ use crate::passes::eye_plan::EyePlan;
 use crate::passes::recording::{Recording, counted};
 use crate::passes::shaders::coarse;
 use crate::passes::storage::{buffers, memory};
-use crate::passes::{bin::macro_tiles, pipelines::FromPlan, project, shared, sort};
+use crate::passes::{project, shared, sort};
 use rara_base::limits;
 use rara_gpu::DeviceShape;
 
@@ -47,20 +47,11 @@ pub(super) fn scratch(plan: &EyePlan, is_for_cpus: bool, words: u64) -> u64 {
     }
 }
 
-impl FromPlan<EyePlan> for coarse::Constants {
-    fn from_plan(plan: &EyePlan) -> Self {
-        Self {
-            rects: plan.keeps_rects(),
-        }
-    }
-}
-
 /// Writes coarse lists where those of the tiles have no room.
-pub(super) fn record(recording: &mut Recording<'_, '_, EyePlan>) {
+pub(super) fn record_coarse(recording: &mut Recording<'_, '_, EyePlan>) {
     let buffers = buffers!(coarse {
         shared::MEMORY => [frame, counts],
         project::MEMORY => [tile_masks],
-        macro_tiles::MEMORY => [tile_list],
         MEMORY => [tile_splats, tile_begins];
         order: sort::order(recording.plan),
     });

@@ -181,8 +181,10 @@ pub(super) fn record(recording: &mut Recording<'_, '_, EyePlan>) {
     recording.dispatch(buffers, (), Groups::Count(columns * rows));
     let buffers = buffers!(row_scan {
         shared::MEMORY => [frame, counts],
+        project::MEMORY => [tile_masks],
+        lists::MEMORY => [tile_splats, tile_begins],
         MEMORY => [row_sums, tile_list];
-        tile_begins: &lists::MEMORY.tile_begins,
+        order,
     });
     let tiles = &plan.data.tiles;
     let rows = Groups::Count(tiles.tile_count / tiles.tile_columns);

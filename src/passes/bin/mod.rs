@@ -19,11 +19,8 @@ pub(crate) static STAGE: Stage<EyePlan> = Stage {
     needed: |plan| plan.finds_view() && plan.is_tiled(),
     missed: |plan| plan.is_tiled() || plan.gaussians() == 0,
     memory: &[lists::STORAGES, spans::STORAGES, macro_tiles::STORAGES],
-    record: |recording| {
-        match recording.plan.cut.shape {
-            DeviceShape::Cpu => spans::record(recording),
-            DeviceShape::Gpu { .. } => macro_tiles::record(recording),
-        }
-        lists::record(recording);
+    record: |recording| match recording.plan.cut.shape {
+        DeviceShape::Cpu => spans::record(recording),
+        DeviceShape::Gpu { .. } => macro_tiles::record(recording),
     },
 };

@@ -74,4 +74,5 @@ pub(super) fn record(recording: &mut Recording<'_, '_, EyePlan>) {
         tile_splats: &lists::MEMORY.tile_splats,
     });
     recording.dispatch(buffers, (), counted!(part_groups));
+    lists::record_coarse(recording);
 }

@@ -38,7 +38,8 @@ void main() {
     vec3 c = cross(f.b1, f.b2);
     SplatDepth depth;
     bool is_union = LAYER.region.op == OP_OR;
-    depth.mean = vec4(f.view_centre.z, slope_of(f, c, f.m3), is_union ? 1.0 : 0.0);
+    float deviation = sqrt(max(covariance(f, c, f.m3, f.m3) / f.det, 1e-30));
+    depth.mean = vec4(f.view_centre.z, slope_of(f, c, f.m3), is_union ? -deviation : deviation);
     depth.far = vec4(8.0, 0.0, 0.0, 0.0);
     depth.near = depth.far;
     vec3 position = gaussian.position_opacity.xyz;

@@ -12,19 +12,47 @@ float normal_density(float z) {
 // Shares below which a pixel shows nothing of a splat.
 const float LEAST_SHARE = 1e-9;
 
+// What a normal distribution has between two bounds, by its tails on the side where both are small.
+float between(float low, float high) {
+    return low + high > 0.0 ? tail_phi(-low) - tail_phi(-high) : tail_phi(high) - tail_phi(low);
+}
+
 float mean_depth(SplatDepth s, vec2 delta) {
     float whole = s.mean.x + dot(s.mean.yz, delta);
     float low = -clamp(s.far.x + dot(s.far.yz, delta), -8.0, 8.0);
     float high = clamp(s.near.x + dot(s.near.yz, delta), -8.0, 8.0);
     float moment = s.far.w * normal_density(low) + s.near.w * normal_density(high);
-    if (s.mean.w != 0.0) {
+    if (s.mean.w < 0.0) {
         // A union leaves out what is between the two.
         float share = low < high ? tail_phi(low) + tail_phi(-high) : 1.0;
         return whole - (low < high ? moment / max(share, LEAST_SHARE) : 0.0);
     }
-    // The difference is taken between the tails on the side where both are small.
-    float share = low + high > 0.0 ? tail_phi(-low) - tail_phi(-high) : tail_phi(high) - tail_phi(low);
-    return low < high ? whole + moment / max(share, LEAST_SHARE) : whole;
+    return low < high ? whole + moment / max(between(low, high), LEAST_SHARE) : whole;
+}
+
+// The share of what the clip leaves of a splat in a pixel that is before a depth, and the mean depth of that.
+vec2 part_before(SplatDepth s, vec2 delta, float depth) {
+    float whole = s.mean.x + dot(s.mean.yz, delta);
+    float deviation = abs(s.mean.w);
+    float low = -clamp(s.far.x + dot(s.far.yz, delta), -8.0, 8.0);
+    float high = clamp(s.near.x + dot(s.near.yz, delta), -8.0, 8.0);
+    float z = clamp((depth - whole) / deviation, -8.0, 8.0);
+    if (s.mean.w < 0.0) {
+        // What a union leaves out may lie on both sides of the depth.
+        bool leaves_out = low < high && high - low < 16.0;
+        float kept = leaves_out ? tail_phi(low) + tail_phi(-high) : 1.0;
+        float before = tail_phi(z) - (leaves_out ? between(min(low, z), min(high, z)) : 0.0);
+        return vec2(clamp(before / max(kept, LEAST_SHARE), 0.0, 1.0), min(mean_depth(s, delta), depth));
+    }
+    if (z >= high) {
+        return vec2(1.0, mean_depth(s, delta));
+    }
+    if (z <= low) {
+        return vec2(0.0, depth);
+    }
+    float before = between(low, z);
+    float moment = s.far.w * normal_density(low) - deviation * normal_density(z);
+    return vec2(min(before / max(between(low, high), LEAST_SHARE), 1.0), min(whole + moment / max(before, LEAST_SHARE), depth));
 }
 
 #endif

@@ -25,4 +25,15 @@ float occluder_farness(uvec2 pixel) {
     return (farness(float(word)) + 0.5) / (is_short ? 65535.0 : 16777215.0);
 }
 
+// The depth beyond which a pixel shows nothing. What the host has drawn nothing on hides nothing.
+float occluder_depth(uvec2 pixel) {
+    float scale = push.params.depth_scale;
+    float held = farness(occluder_farness(pixel));
+    if (scale > 0.0 ? held <= 0.0 : held >= 1.0) {
+        return NO_DEPTH;
+    }
+    float falling = held - push.params.depth_offset;
+    return is_orthographic() ? -falling / scale : scale / falling;
+}
+
 #endif

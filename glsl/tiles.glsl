@@ -29,9 +29,11 @@ layout(constant_id = 9) const uint SHOW = SHOW_COLOUR; // SHOW_*
 // True where the tiles that hold anything are listed: first those that need no code for several surfaces, then, from the end on,
 // the others, and behind all of them how many each list has.
 layout(constant_id = 11) const bool LISTED = false;
+// True where the host's depth hides what lies behind it of a splat, not whole splats by the depth of their centres.
+layout(constant_id = 14) const bool SOFT_DEPTH = false;
 #include "behind.glsl"
 #include "coarse.glsl"
-const bool FINDS_DEPTH = EXPECTED_DEPTH || WRITTEN_DEPTH;
+const bool FINDS_DEPTH = EXPECTED_DEPTH || WRITTEN_DEPTH || SOFT_DEPTH;
 
 BUFFER(readonly, 1, vec4, splats)
 BUFFER(readonly, 2, uint, tile_splats)
@@ -55,7 +57,7 @@ vec2 pixel_centre; // the first one's
 vec3 sum[ROWS];
 float transmittance[ROWS];
 float alphas[SHOW >= SHOW_MEAN ? ROWS : 1u]; // their sum, or the most that one splat has added
-float occluder[ROWS]; // the farness beyond which splats are hidden
+float occluder[ROWS]; // the farness beyond which splats are hidden, or the depth where SOFT_DEPTH
 float depths[EXPECTED_DEPTH ? ROWS : 1u]; // the sum of their splats' depths, each times what it adds to the alpha
 float written[WRITTEN_DEPTH ? ROWS : 1u]; // the depth of the splat that makes them as opaque as is asked for
 uint strongest[STRONGEST ? ROWS : 1u]; // the number of the splat that has added most to their alpha
@@ -111,7 +113,7 @@ bool opacities(Seen splat, float u, float v, out float alpha[ROWS], out float we
     }
     // Where the sort has compared whole depths, all that follows is hidden too.
     bool are_sorted = EYE.order.key_shift == 0u && EYE.order.by_distance == 0u;
-    done = DEPTH_FORM != DEPTH_NONE && hide(splat.far, alpha) && are_sorted;
+    done = DEPTH_FORM != DEPTH_NONE && !SOFT_DEPTH && hide(splat.far, alpha) && are_sorted;
     return !done;
 }
 
@@ -129,6 +131,21 @@ void cut_depths(vec2 delta, out float here[ROWS]) {
     }
 }
 
+// Takes from a splat's alphas what is behind the host's depth, and from its depths too.
+void soften(SplatDepth depth, vec2 delta, inout float here[ROWS], inout float alpha[ROWS]) {
+    for (uint row = 0u; row < ROWS; row++) {
+        vec2 part = part_before(depth, delta + vec2(0.0, row), occluder[row]);
+        alpha[row] = decayed(alpha[row], part.x);
+        here[row] = part.y;
+    }
+}
+
+// The depth of a splat that no clip bounds.
+SplatDepth unbounded_depth() {
+    vec4 none = vec4(8.0, 0.0, 0.0, 0.0);
+    return SplatDepth(vec4(seen_depth.mean.xyz, abs(seen_depth.mean.w)), none, none);
+}
+
 // A whole splat whose mean depth the clip changes all the same.
 const float Z_BOUNDED = 0.5 * (Z_WHOLE + Z_CUT_AWAY);
 // The z from which on a bound changes a mean depth by less than 2e-5 deviations.
@@ -139,7 +156,7 @@ bool is_bounded(SplatDepth depth, vec2 delta) {
     vec2 reach = 0.5 * vec2(TILE_WIDTH, TILE_HEIGHT);
     float far = depth.far.x + dot(depth.far.yz, delta) - dot(abs(depth.far.yz), reach);
     float near = depth.near.x + dot(depth.near.yz, delta) - dot(abs(depth.near.yz), reach);
-    return depth.mean.w != 0.0 || min(far, near) < UNBOUNDED;
+    return depth.mean.w < 0.0 || min(far, near) < UNBOUNDED;
 }
 
 // `here` is the splat's depth in each pixel, where depths are found.
@@ -187,7 +204,9 @@ void blend(Seen splat, vec2 delta) {
     float weight[ROWS];
     if (opacities(splat, splat.centre_conic.z * delta.x, splat.centre_conic.w * delta.x, alpha, weight)) {
         float here[ROWS];
-        if (FINDS_DEPTH) {
+        if (SOFT_DEPTH) {
+            soften(unbounded_depth(), delta, here, alpha);
+        } else if (FINDS_DEPTH) {
             whole_depths(delta, here);
         }
         add(splat, here, alpha, weight);
@@ -207,7 +226,14 @@ void blend_cut(Seen splat, Record record, vec2 delta) {
         }
         float here[ROWS];
         if (FINDS_DEPTH) {
-            if (CLIP_MODE >= MODE_RARA && (WHOLE_ALONE || splat.linear.x != Z_WHOLE)) {
+            bool is_bound = CLIP_MODE >= MODE_RARA && (WHOLE_ALONE || splat.linear.x != Z_WHOLE);
+            if (SOFT_DEPTH) {
+                SplatDepth depth = unbounded_depth();
+                if (is_bound) {
+                    depth = seen_depth;
+                }
+                soften(depth, delta, here, alpha);
+            } else if (is_bound) {
                 cut_depths(delta, here);
             } else {
                 whole_depths(delta, here);
@@ -300,7 +326,11 @@ void main() {
             strongest[row] = NO_SPLAT;
             most_added[row] = 0.0;
         }
-        occluder[row] = DEPTH_FORM != DEPTH_NONE ? occluder_farness(pixel + uvec2(0u, row)) : 0.0;
+        occluder[row] = 0.0;
+        if (DEPTH_FORM != DEPTH_NONE) {
+            uvec2 at = pixel + uvec2(0u, row);
+            occluder[row] = SOFT_DEPTH ? occluder_depth(at) : occluder_farness(at);
+        }
     }
     for (uint first = begin; first < end && !all_done(); first += BATCH) {
         float x;

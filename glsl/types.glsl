@@ -201,7 +201,7 @@ struct Quad {
 
 // How deep a splat is in a pixel: the mean of what the clip leaves of it. Only the strictest plane of each kind counts.
 struct SplatDepth {
-    vec4 mean; // of the whole splat at its centre, how much it changes a px across and down; w: 1 where a union is kept
+    vec4 mean; // of the whole splat at its centre, how much it changes a px across and down; w: its deviation in depth, negative where a union is kept
     vec4 far; // the plane that keeps the far side: z at the centre, dz/dx, dz/dy; the shift of the mean by a density of one
     vec4 near; // the plane that keeps the near side, likewise; its shift is towards the eye
 };

@@ -90,6 +90,9 @@ pub struct RaraDepthDesc {
     /// meets the splats: the depth of the splat with which the pixel reaches it. It needs readable, tiles and an attachment that
     /// can be written. Default: 0, which writes none.
     pub write_alpha: f32,
+    /// True to hide of each splat what lies behind the host's depth, on each pixel's line of sight, not whole splats by the depth
+    /// of their centres. It needs readable and tiles. Default: false.
+    pub soft: vk::Bool32,
 }
 
 versioned!(RaraDepthDesc);
@@ -112,7 +115,8 @@ pub(crate) unsafe fn depth_desc(desc: *const RaraDepthDesc) -> Result<DepthDesc>
     Ok(DepthDesc::new(desc.format, desc.map.map()?)
         .stencil(desc.stencil != 0)
         .readable(desc.readable != 0)
-        .write_alpha((desc.write_alpha != 0.0).then_some(desc.write_alpha)))
+        .write_alpha((desc.write_alpha != 0.0).then_some(desc.write_alpha))
+        .soft(desc.soft != 0))
 }
 
 /// A depth attachment without stencil, not readable. `desc_size` is sizeof *desc.

@@ -61,6 +61,8 @@ pub(crate) struct Way {
     pub(crate) expects_depth: bool,
     /// True when depths for the host's depth buffer are.
     pub(crate) writes_depth: bool,
+    /// True when the host's depth hides parts of splats.
+    pub(crate) has_soft_depth: bool,
     /// True when the pixels' motion is.
     pub(crate) draws_motion: bool,
     /// Colours, or a debug view.
@@ -89,6 +91,8 @@ pub(crate) struct EyeFacts<'a> {
     pub(crate) expects_depth: bool,
     /// The alpha of the pixels whose depths are written into the host's depth buffer, if any are.
     pub(crate) write_alpha: Option<f32>,
+    /// True when the host's depth hides what lies behind it of a splat, not whole splats.
+    pub(crate) soft_depth: bool,
     /// True when the pixels' motion is wanted.
     pub(crate) draws_motion: bool,
     /// The camera of whose picture the frame shows a part; `None` where it shows all of it.
@@ -137,6 +141,7 @@ impl EyePlan {
                 sort_passes: keys.passes(),
                 expects_depth: eye.expects_depth,
                 writes_depth: write_alpha.is_some(),
+                has_soft_depth: eye.soft_depth && occluders.is_some(),
                 draws_motion: eye.draws_motion && is_tiled,
                 show: settings.show,
                 colours: match settings.show {
@@ -247,7 +252,8 @@ impl EyePlan {
 
     /// True when the splats' depths in their pixels are found.
     pub(crate) fn finds_depth(&self) -> bool {
-        self.way.expects_depth || self.way.writes_depth || self.way.draws_motion
+        let way = &self.way;
+        way.expects_depth || way.writes_depth || way.has_soft_depth || way.draws_motion
     }
 
     /// True when splats' rectangles of tiles are kept, and masks of their tiles only where these do not tell everything.

@@ -90,7 +90,10 @@ fn pipeline(plan: &EyePlan, list: List) -> Pipeline<tiles::Program> {
         several: weight.several && !is_one_of_two,
         combined: weight.combined && !is_one_of_two,
         many: weight.many && !is_one_of_two,
-        decay: weight.decay,
+        decay: match plan.way.has_soft_depth {
+            true => plan.laws.decay,
+            false => weight.decay,
+        },
         miss: weight.miss,
         phi_form: weight.phi,
         rows: work.rows,
@@ -102,6 +105,7 @@ fn pipeline(plan: &EyePlan, list: List) -> Pipeline<tiles::Program> {
         listed: list != List::All,
         expected_depth: plan.way.expects_depth,
         written_depth: plan.way.writes_depth,
+        soft_depth: plan.way.has_soft_depth,
         strongest: plan.way.draws_motion,
     };
     let shader = if work.subgroups {

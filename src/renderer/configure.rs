@@ -5,7 +5,7 @@ use std::sync::Arc;
 use ash::vk;
 
 use super::choose;
-use super::desc::ColorSpace;
+use super::desc::{ColorSpace, DepthDesc};
 use super::frame::{FrameCut, FrameState};
 use super::frames::Decision;
 use super::request::{FrameRequest, Kept};
@@ -250,10 +250,11 @@ impl Renderer {
         choose::raster(settings, device.support(), device.shape(), targets)
     }
 
-    /// True when the host gets more than colours and expected depths: depths for its depth buffer, or motion.
+    /// True when the host gets more than colours and expected depths: depths for its depth buffer, parts of splats, or motion.
     fn draws_beside(&self) -> bool {
         let depth = self.desc.depth;
-        self.desc.motion.is_some() || depth.is_some_and(|depth| depth.write_alpha.is_some())
+        let finds_depth = |depth: DepthDesc| depth.write_alpha.is_some() || depth.soft;
+        self.desc.motion.is_some() || depth.is_some_and(finds_depth)
     }
 
     /// The map from a depth in the scene's units to the host's depth buffer.
@@ -294,6 +295,7 @@ impl Renderer {
                 .map(|(depth, map)| Occluders::new(depth.format, map)),
             expects_depth: self.desc.expected_depth.is_some(),
             write_alpha: readable.and_then(|depth| depth.write_alpha),
+            soft_depth: readable.is_some_and(|depth| depth.soft),
             draws_motion: self.desc.motion.is_some(),
             whole: None,
             colours: SplatColours::Scene,

@@ -70,8 +70,8 @@ setters! {
     }
 }
 
-/// The host's depth attachment. Splats behind its depths are hidden. A splat is hidden in all of its pixels by one depth:
-/// that of its centre, by which splats are ordered. Opaque things are drawn first, then splats.
+/// The host's depth attachment. Splats behind its depths are hidden. A splat is hidden in all of its pixels by one depth, that of
+/// its centre, by which splats are ordered, unless `soft` is set. Opaque things are drawn first, then splats.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct DepthDesc {
@@ -92,9 +92,14 @@ pub struct DepthDesc {
     /// [`draw_depth`](super::Renderer::draw_depth). Pixels that stay below keep the host's depth, as do those whose depth is
     /// nearer. It needs `readable` and tiles. In the host's scope the attachment can be written.
     pub write_alpha: Option<f32>,
+    /// True to hide of each splat what lies behind the host's depth, on each pixel's line of sight, as a clip there would cut it:
+    /// splats that half-covering meshes go through end smoothly. Else a splat is hidden whole, by the depth of its centre. It
+    /// needs `readable` and tiles.
+    pub soft: bool,
 }
 
 setters!(DepthDesc {
+    soft: bool,
     stencil: bool,
     readable: bool,
     write_alpha: Option<f32>,
@@ -160,6 +165,7 @@ impl DepthDesc {
             map,
             readable: false,
             write_alpha: None,
+            soft: false,
         }
     }
 }
@@ -344,6 +350,13 @@ impl RendererDesc {
                 ));
             }
             _ => {}
+        }
+        if depth.soft && !depth.readable {
+            return Err(Error::Invalid(
+                "DepthDesc::soft is set without DepthDesc::readable: tiles hide parts of splats, and need the host's depth \
+                 before its scope"
+                    .into(),
+            ));
         }
         let name = &device.info().name;
         let as_depth = vk::FormatFeatureFlags::DEPTH_STENCIL_ATTACHMENT;

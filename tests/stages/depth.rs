@@ -67,7 +67,7 @@ fn mean(depth: &SplatDepth, [dx, dy]: [f64; 2]) -> [f64; 2] {
     } else {
         high.phi() - low.phi()
     };
-    match (low < high, depth.mean[3] != 0.0) {
+    match (low < high, depth.mean[3] < 0.0) {
         (false, _) => [whole, 0.0],
         (true, false) => [whole + moment / between, between],
         (true, true) => [whole - moment / (1.0 - between), 1.0 - between],
@@ -113,7 +113,7 @@ fn depths_of_layers_are_in_the_scenes_units() {
             let alone = depths(&device, &mut renderer, part, &own, &kept);
             assert!(alone.len() > 100, "{} survive", alone.len());
             for (number, mut one) in alone {
-                one.mean = [0, 1, 2, 3].map(|i| one.mean[i] * if i < 3 { unit } else { 1.0 });
+                one.mean = one.mean.map(|value| value * unit);
                 one.far[3] *= unit;
                 one.near[3] *= unit;
                 let (ours, theirs) = together.next().expect("as many survive");

@@ -55,6 +55,69 @@ fn hides(on: On<'_>, host: &Host, (world, truth): (&World, &Picture), map: Depth
     }
 }
 
+/// A depth that hides parts of splats cuts them as a far plane of the camera does, to first order of perspective: the affine form of
+/// the exact weights. Where a clip cuts them too, the two are taken along the line of sight, which is exact but for the low-pass.
+/// What the host has drawn nothing before stays whole.
+#[test]
+fn a_soft_depth_hides_what_a_far_plane_cuts() {
+    let linear = DepthMap::orthographic(-1.0, 30.0).expect("two depths");
+    let flat = (World::flat(), linear);
+    let mut unclipped = [(World::new(), maps()[0]), (World::flat(), linear)];
+    for (world, _) in &mut unclipped {
+        world.clip = Clip::default();
+    }
+    let [perspective, orthographic] = unclipped;
+    let worlds = [
+        (perspective, 0.1),
+        (orthographic, 0.1),
+        ((World::new(), maps()[2]), 0.2),
+        (flat, 0.2),
+    ];
+    let mut errors = Vec::new();
+    with_host(true, |host, device| {
+        let first = first(device);
+        for ((mut world, map), most) in worlds {
+            world.settings = world.settings.form(rara::ExactForm::Affine);
+            let depth = world.meshes[0].1;
+            let offset = vk::Offset2D { x: 10, y: 5 };
+            let (width, height) = (120, 100);
+            let extent = vk::Extent2D { width, height };
+            world.meshes = [(vk::Rect2D { offset, extent }, depth); 2];
+            let desc = canvas(&world, map, vk::Format::D32_SFLOAT);
+            let behind = depth_desc(&desc, map, true);
+            let canvas = Canvas::new(&host.lend(), device, desc);
+            let render = |camera: &Camera| {
+                let (scene, clip, settings) = (&world.scene, &world.clip, &world.settings);
+                rara_reference::render::<f64>(scene, camera, clip, settings).picture
+            };
+            let mut truth = render(&world.camera.clip_far(Some(depth)));
+            let whole = render(&world.camera);
+            for (at, pixel) in truth.pixels.iter_mut().enumerate() {
+                let (x, y) = (at as u32 % VIEW.0, at as u32 / VIEW.0);
+                if !(10..10 + width).contains(&x) || !(5..5 + height).contains(&y) {
+                    *pixel = whole.pixels[at];
+                }
+            }
+            for bindings in [Bindings::Bound, Bindings::Mixed] {
+                let [hard, soft] = [false, true].map(|soft| {
+                    let desc = RendererDesc::new(FLOATS).bindings(bindings);
+                    let desc = desc.depth(Some(behind.soft(soft)));
+                    let (picture, _) = draw((device, &first), &canvas, &world, desc, Raster::Tiles);
+                    [0.0, 0.01].map(|share| apart(&picture, &truth, share))
+                });
+                eprintln!("{map:?}, {bindings:?}: {soft:?}/255, {hard:?} by centres");
+                errors.push((soft[1], hard[1], most));
+            }
+        }
+    });
+    for (soft, hard, most) in errors {
+        assert!(
+            soft < most && hard > 10.0,
+            "99 %: {soft}, by centres {hard}"
+        );
+    }
+}
+
 /// Depths that a buffer rounds: a splat may lie on a mesh's own step, and then counts as before it in every way of
 /// drawing.
 #[test]

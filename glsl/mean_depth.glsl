@@ -12,15 +12,24 @@ float normal_density(float z) {
 // Shares below which a pixel shows nothing of a splat.
 const float LEAST_SHARE = 1e-9;
 
-// What a normal distribution has between two bounds, by its tails on the side where both are small.
+// The share of a normal distribution between two bounds, by its tails on the side where both are small.
 float between(float low, float high) {
     return low + high > 0.0 ? tail_phi(-low) - tail_phi(-high) : tail_phi(high) - tail_phi(low);
 }
 
-float mean_depth(SplatDepth s, vec2 delta) {
+// The mean depth of the whole splat in a pixel, and the bounds that the clip sets it, deviations from that.
+vec3 mean_and_bounds(SplatDepth s, vec2 delta) {
     float whole = s.mean.x + dot(s.mean.yz, delta);
     float low = -clamp(s.far.x + dot(s.far.yz, delta), -8.0, 8.0);
     float high = clamp(s.near.x + dot(s.near.yz, delta), -8.0, 8.0);
+    return vec3(whole, low, high);
+}
+
+float mean_depth(SplatDepth s, vec2 delta) {
+    vec3 found = mean_and_bounds(s, delta);
+    float whole = found.x;
+    float low = found.y;
+    float high = found.z;
     float moment = s.far.w * normal_density(low) + s.near.w * normal_density(high);
     if (s.mean.w < 0.0) {
         // A union leaves out what is between the two.
@@ -32,13 +41,14 @@ float mean_depth(SplatDepth s, vec2 delta) {
 
 // The share of what the clip leaves of a splat in a pixel that is before a depth, and the mean depth of that.
 vec2 part_before(SplatDepth s, vec2 delta, float depth) {
-    float whole = s.mean.x + dot(s.mean.yz, delta);
+    vec3 found = mean_and_bounds(s, delta);
+    float whole = found.x;
+    float low = found.y;
+    float high = found.z;
     float deviation = abs(s.mean.w);
-    float low = -clamp(s.far.x + dot(s.far.yz, delta), -8.0, 8.0);
-    float high = clamp(s.near.x + dot(s.near.yz, delta), -8.0, 8.0);
     float z = clamp((depth - whole) / deviation, -8.0, 8.0);
     if (s.mean.w < 0.0) {
-        // What a union leaves out may lie on both sides of the depth.
+        // The interval that a union leaves out may lie on both sides of the depth.
         bool leaves_out = low < high && high - low < 16.0;
         float kept = leaves_out ? tail_phi(low) + tail_phi(-high) : 1.0;
         float before = tail_phi(z) - (leaves_out ? between(min(low, z), min(high, z)) : 0.0);

@@ -25,7 +25,7 @@ float occluder_farness(uvec2 pixel) {
     return (farness(float(word)) + 0.5) / (is_short ? 65535.0 : 16777215.0);
 }
 
-// The depth beyond which a pixel shows nothing. What the host has drawn nothing on hides nothing.
+// The depth beyond which a pixel shows nothing. A pixel on which the host has drawn nothing hides nothing.
 float occluder_depth(uvec2 pixel) {
     float scale = push.params.depth_scale;
     float held = farness(occluder_farness(pixel));

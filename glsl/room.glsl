@@ -2,7 +2,6 @@
 // `counts` is declared.
 #ifndef RARA_ROOM
 #define RARA_ROOM
-#include "groups.glsl"
 
 // Returns whether each tile has a list of its own. If not, coarse lists are written instead. One invocation decides for the frame.
 bool decide_room(uint pairs) {
@@ -11,7 +10,6 @@ bool decide_room(uint pairs) {
     uvec2 quads = (uvec2(EYE.tiles.tile_columns, tile_rows()) + QUAD_TILES - 1u) / QUAD_TILES;
     counts.at[0].pairs = pairs;
     counts.at[0].has_room = has_room ? 1u : 0u;
-    counts.at[0].coarse_groups = groups(has_room ? 0u : counts.at[0].mesh_groups.w, COARSE_GROUP_SIZE);
     counts.at[0].tile_groups = uvec4(STRIP_ROWS * EYE.tiles.tile_columns, strips, 1u, 0u);
     counts.at[0].composite = uvec4(6u * quads.x * quads.y, 1u, 0u, 0u);
     return has_room;

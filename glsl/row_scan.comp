@@ -1,10 +1,11 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // A workgroup a row of tiles finds where the splats of each of its tiles begin, and lists the tiles that hold any: first those
-// that need no code for several surfaces, and from the list's end on the others. Where not all pairs have room, the workgroups write
-// coarse lists instead.
+// that need no code for several surfaces, and from the list's end on the others. Where not all pairs have room, the workgroups
+// write coarse lists instead.
 #include "macro_tiles.glsl"
 #include "workgroup_sum.glsl"
+#include "groups.glsl"
 
 layout(local_size_x = RADIX_GROUP_SIZE) in;
 
@@ -67,8 +68,8 @@ void write_commands(uint pairs, uint filled, uint several) {
 
 // The row's part of coarse lists, in which all tiles are listed in their order.
 void write_coarse(uint row) {
-    uint groups = (counts.at[0].mesh_groups.w + COARSE_GROUP_SIZE - 1u) / COARSE_GROUP_SIZE;
-    for (uint group = row; group < groups; group += tile_rows()) {
+    uint end = (counts.at[0].mesh_groups.w + COARSE_GROUP_SIZE - 1u) / COARSE_GROUP_SIZE;
+    for (uint group = row; group < end; group += tile_rows()) {
         write_coarse_lists(group);
         barrier();
     }

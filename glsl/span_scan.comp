@@ -5,6 +5,7 @@
 // instead.
 #include "bin.glsl"
 #include "capped_sum.glsl"
+#include "groups.glsl"
 
 const uint ROWS = 256u; // at a time
 layout(local_size_x = ROWS) in;
@@ -61,5 +62,6 @@ void main() {
         counts.at[0].span_groups = has_room ? groups(EYE.tiles.span_runs, SPAN_GROUP_SIZE) : uvec4(0u);
         counts.at[0].part_groups = has_room ? groups(rows * EYE.tiles.row_parts, ROW_GROUP_SIZE) : uvec4(0u);
         counts.at[0].row_groups = has_room ? groups(rows, ROW_GROUP_SIZE) : uvec4(0u);
+        counts.at[0].coarse_groups = has_room ? uvec4(0u) : groups(counts.at[0].mesh_groups.w, COARSE_GROUP_SIZE);
     }
 }

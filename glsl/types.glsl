@@ -201,7 +201,7 @@ struct Quad {
 
 // How deep a splat is in a pixel: the mean of what the clip leaves of it. Only the strictest plane of each kind counts.
 struct SplatDepth {
-    vec4 mean; // of the whole splat at its centre, how much it changes a px across and down; w: its deviation in depth, negative where a union is kept
+    vec4 mean; // of the whole splat at its centre, by how much it changes a px across and down; its deviation, negative of a union
     vec4 far; // the plane that keeps the far side: z at the centre, dz/dx, dz/dy; the shift of the mean by a density of one
     vec4 near; // the plane that keeps the near side, likewise; its shift is towards the eye
 };
@@ -227,7 +227,7 @@ struct FrameCounts {
     uvec4 batch_groups; // indirect dispatch of the batches of splats of a macro-tile
     uvec4 tile_groups; // indirect dispatch of the tiles; with the pipelines for GPUs but for those of several_tile_groups
     uvec4 several_tile_groups; // indirect dispatch of the tiles in which several surfaces cut a splat
-    uvec4 coarse_groups; // indirect dispatch over the splats of coarse lists; none where the tiles' lists have room
+    uvec4 coarse_groups; // indirect dispatch over the splats of coarse lists, with the pipelines for CPU drivers
     uvec4 composite; // indirect draw of the tiles' picture
     uint pairs; // pairs of tile and splat; those of macro-tile and splat where already these have no room
     uint has_room; // 1: the pairs have room; 0: the lists are coarse

@@ -163,8 +163,8 @@ pub unsafe extern "C" fn rara_layer_editor_record(
     })
 }
 
-/// Frees an editor's memory; null is ignored. The host has waited for the edits, or
-/// calls rara_device_destroy_after.
+/// Frees an editor's memory; null is ignored. The host has waited for the edits, or calls
+/// rara_device_destroy_after.
 ///
 /// # Safety
 /// `editor` is null, or alive and not used any more, not even by the device.

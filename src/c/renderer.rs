@@ -123,8 +123,8 @@ pub unsafe extern "C" fn rara_renderer_forget(renderer: *mut RaraRenderer) -> Ra
     })
 }
 
-/// Frees a renderer's memory and pipelines; null is ignored. The host has waited for all of its frames, or
-/// calls rara_device_destroy_after.
+/// Frees a renderer's memory and pipelines; null is ignored. The host has waited for all of its frames, or calls
+/// rara_device_destroy_after.
 ///
 /// # Safety
 /// `renderer` is null, or alive and not used any more, not even by the device.

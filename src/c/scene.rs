@@ -91,8 +91,8 @@ pub unsafe extern "C" fn rara_scene_buffers_bytes(scene: *const RaraSceneBuffers
     number(scene, "scene", |scene| scene.buffers.bytes())
 }
 
-/// Frees a scene's device memory; null is ignored. The host has waited for the frames that use it, or
-/// calls rara_device_destroy_after.
+/// Frees a scene's device memory; null is ignored. The host has waited for the frames that use it, or calls
+/// rara_device_destroy_after.
 ///
 /// # Safety
 /// `scene` is null, or alive and not used any more, not even by the device.

@@ -61,8 +61,9 @@ pub unsafe extern "C" fn rara_scene_buffers_staging_bytes(
 /// Synchronisation: the copies wait for nothing, as their memory is new, and nothing is needed after them, since
 /// rara_renderer_prepare begins with a barrier that waits for transfers. It may be recorded later into the same command buffer,
 /// or into one that is submitted later to the same queue. Where `cmd` goes to another queue, as one for transfers alone, whose
-/// family is one of `shared_families` of RaraAdoptDesc, the submission of rara_renderer_prepare waits for a semaphore. What is written to the staging memory reaches
-/// the device with the submission where the memory is host-coherent; else the host flushes the range before it submits.
+/// family is one of `shared_families` of RaraAdoptDesc, the submission of rara_renderer_prepare waits for a semaphore. What is
+/// written to the staging memory reaches the device with the submission where the memory is host-coherent; else the host flushes
+/// the range before it submits.
 ///
 /// Lifetimes: the host leaves the staging range alone and keeps `*scene` alive until `cmd` has executed. A scene that is
 /// replaced lives until the last frame that was prepared with it has executed; `layers` and what they point to may be freed
@@ -70,8 +71,8 @@ pub unsafe extern "C" fn rara_scene_buffers_staging_bytes(
 ///
 /// # Safety
 /// The layers are as their fields say. `cmd` is recording outside a rendering scope, and will be submitted to the device's
-/// queue or to one of a shared family, or never; no other thread uses its pool. `staging` is as its fields say, and neither the device nor anybody else
-/// uses its range.
+/// queue or to one of a shared family, or never; no other thread uses its pool. `staging` is as its fields say, and neither the
+/// device nor anybody else uses its range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_scene_buffers_upload_with(
     device: *const RaraDevice,

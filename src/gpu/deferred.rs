@@ -1,4 +1,4 @@
-//! What the host is done with before the device is. It is dropped when a fence of the host's is signalled.
+//! The host may be done with something before the device is: it is then dropped when a fence of the host's is signalled.
 
 use std::any::Any;
 use std::sync::{MutexGuard, PoisonError};
@@ -33,7 +33,7 @@ impl Device {
         };
         let finished: Vec<Deferred> = deferred.extract_if(.., is_finished).collect();
         let left = deferred.len();
-        // What goes may call the host, which may come back here.
+        // A drop may call the host, which may come back here.
         drop(deferred);
         drop(finished);
         left

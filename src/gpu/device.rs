@@ -56,7 +56,7 @@ pub(super) struct Inner {
     /// The host's own source of memory, which takes the allocator's place.
     source: Option<Arc<dyn MemorySource>>,
     account: Account,
-    /// What is dropped when a fence is signalled.
+    /// The objects that are dropped when a fence is signalled.
     pub(super) deferred: Mutex<Vec<Deferred>>,
     /// Idle command buffers of [`Device::submit_and_wait`].
     pub(super) idle: Mutex<Vec<Submission>>,
@@ -244,7 +244,7 @@ impl Device {
         &self.inner.families
     }
 
-    /// What the queues of a family can do; `None` for one that its memory is not shared with.
+    /// The abilities of a family's queues; `None` for one that its memory is not shared with.
     #[doc(hidden)]
     pub fn queue_flags(&self, family: u32) -> Option<vk::QueueFlags> {
         self.families().contains(&family).then(|| {

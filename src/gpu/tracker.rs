@@ -111,8 +111,8 @@ impl Tracker {
             (stages, reads, writes) = (stages | s, reads | r, writes | w);
         }
         let awaited = match self.draws {
-            Draws::Around => Stages::NONE,
-            Draws::After | Draws::Elsewhere => DRAW_STAGES,
+            Draws::Around | Draws::Elsewhere => Stages::NONE,
+            Draws::After => DRAW_STAGES,
         };
         vk::MemoryBarrier2::default()
             .src_stage_mask(stages & !awaited)

@@ -37,7 +37,7 @@ pub(crate) fn draw(plan: &EyePlan, targets: Targets, part: Part) -> Draw<composi
         linear: converts && targets.linear,
         stored: converts && !targets.linear,
         depths: matches!(part, Part::ExpectedDepth(_)),
-        // Of what lies behind the pixels, written depths begin where expected ones end.
+        // Written depths begin behind the pixels, or behind the expected depths where a frame has these.
         expected_depth: part == Part::WrittenDepth && plan.way.expects_depth,
         written_depth: false,
         strongest: false,

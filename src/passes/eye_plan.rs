@@ -61,8 +61,6 @@ pub(crate) struct Way {
     pub(crate) expects_depth: bool,
     /// True when depths for the host's depth buffer are.
     pub(crate) writes_depth: bool,
-    /// True when the host's depth hides parts of splats.
-    pub(crate) has_soft_depth: bool,
     /// True when the pixels' motion is.
     pub(crate) draws_motion: bool,
     /// Colours, or a debug view.
@@ -91,8 +89,6 @@ pub(crate) struct EyeFacts<'a> {
     pub(crate) expects_depth: bool,
     /// The alpha of the pixels whose depths are written into the host's depth buffer, if any are.
     pub(crate) write_alpha: Option<f32>,
-    /// True when the host's depth hides what lies behind it of a splat, not whole splats.
-    pub(crate) soft_depth: bool,
     /// True when the pixels' motion is wanted.
     pub(crate) draws_motion: bool,
     /// The camera of whose picture the frame shows a part; `None` where it shows all of it.
@@ -141,7 +137,6 @@ impl EyePlan {
                 sort_passes: keys.passes(),
                 expects_depth: eye.expects_depth,
                 writes_depth: write_alpha.is_some(),
-                has_soft_depth: eye.soft_depth && occluders.is_some(),
                 draws_motion: eye.draws_motion && is_tiled,
                 show: settings.show,
                 colours: match settings.show {
@@ -253,7 +248,12 @@ impl EyePlan {
     /// True when the splats' depths in their pixels are found.
     pub(crate) fn finds_depth(&self) -> bool {
         let way = &self.way;
-        way.expects_depth || way.writes_depth || way.has_soft_depth || way.draws_motion
+        way.expects_depth || way.writes_depth || way.draws_motion || self.has_soft_depth()
+    }
+
+    /// True when the host's depth hides parts of splats.
+    pub(super) fn has_soft_depth(&self) -> bool {
+        self.occluders.is_some_and(|occluders| occluders.soft)
     }
 
     /// True when splats' rectangles of tiles are kept, and masks of their tiles only where these do not tell everything.

@@ -12,13 +12,15 @@ pub(crate) struct Occluders {
     pub(crate) form: u32,
     /// The meaning of the stored numbers.
     pub(crate) map: DepthMap,
+    /// True when they hide what lies behind them of a splat, not whole splats by their centres.
+    pub(crate) soft: bool,
     /// The picture's size, px.
     pub(crate) size: vk::Extent2D,
 }
 
 impl Occluders {
     /// The occluders of a host whose depth has this format and meaning, in a picture of no size yet.
-    pub(crate) fn new(format: vk::Format, map: DepthMap) -> Self {
+    pub(crate) fn new(format: vk::Format, map: DepthMap, soft: bool) -> Self {
         let form = match format {
             vk::Format::D16_UNORM | vk::Format::D16_UNORM_S8_UINT => types::DEPTH_16,
             vk::Format::X8_D24_UNORM_PACK32 | vk::Format::D24_UNORM_S8_UINT => types::DEPTH_24,
@@ -27,6 +29,7 @@ impl Occluders {
         Self {
             form,
             map,
+            soft,
             size: vk::Extent2D::default(),
         }
     }

@@ -90,7 +90,7 @@ fn pipeline(plan: &EyePlan, list: List) -> Pipeline<tiles::Program> {
         several: weight.several && !is_one_of_two,
         combined: weight.combined && !is_one_of_two,
         many: weight.many && !is_one_of_two,
-        decay: match plan.way.has_soft_depth {
+        decay: match plan.has_soft_depth() {
             true => plan.laws.decay,
             false => weight.decay,
         },
@@ -105,7 +105,7 @@ fn pipeline(plan: &EyePlan, list: List) -> Pipeline<tiles::Program> {
         listed: list != List::All,
         expected_depth: plan.way.expects_depth,
         written_depth: plan.way.writes_depth,
-        soft_depth: plan.way.has_soft_depth,
+        soft_depth: plan.has_soft_depth(),
         strongest: plan.way.draws_motion,
     };
     let shader = if work.subgroups {

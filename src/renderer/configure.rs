@@ -292,10 +292,9 @@ impl Renderer {
             pair_capacity: 0,
             occluders: readable
                 .zip(depth_map)
-                .map(|(depth, map)| Occluders::new(depth.format, map)),
+                .map(|(depth, map)| Occluders::new(depth.format, map, depth.soft)),
             expects_depth: self.desc.expected_depth.is_some(),
             write_alpha: readable.and_then(|depth| depth.write_alpha),
-            soft_depth: readable.is_some_and(|depth| depth.soft),
             draws_motion: self.desc.motion.is_some(),
             whole: None,
             colours: SplatColours::Scene,

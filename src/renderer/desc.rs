@@ -99,10 +99,10 @@ pub struct DepthDesc {
 }
 
 setters!(DepthDesc {
-    soft: bool,
     stencil: bool,
     readable: bool,
     write_alpha: Option<f32>,
+    soft: bool,
 });
 
 /// The target of expected depths.
@@ -336,27 +336,26 @@ impl RendererDesc {
                 "DepthDesc::stencil is set and {format:?} has none"
             )));
         }
-        match depth.write_alpha {
-            Some(alpha) if !(alpha > 0.0 && alpha <= 1.0) => {
-                return Err(Error::Invalid(format!(
-                    "DepthDesc::write_alpha is {alpha}; it must be above 0 and at most 1"
-                )));
-            }
-            Some(_) if !depth.readable => {
-                return Err(Error::Invalid(
-                    "DepthDesc::write_alpha is set without DepthDesc::readable: tiles find the depths, and need the \
-                     host's own before its scope"
-                        .into(),
-                ));
-            }
-            _ => {}
+        if let Some(alpha) = depth
+            .write_alpha
+            .filter(|alpha| !(*alpha > 0.0 && *alpha <= 1.0))
+        {
+            return Err(Error::Invalid(format!(
+                "DepthDesc::write_alpha is {alpha}; it must be above 0 and at most 1"
+            )));
         }
-        if depth.soft && !depth.readable {
-            return Err(Error::Invalid(
-                "DepthDesc::soft is set without DepthDesc::readable: tiles hide parts of splats, and need the host's depth \
-                 before its scope"
-                    .into(),
-            ));
+        let of_tiles = [
+            (
+                "write_alpha",
+                "find the depths",
+                depth.write_alpha.is_some(),
+            ),
+            ("soft", "hide parts of splats", depth.soft),
+        ];
+        if let Some((field, act, _)) = of_tiles.iter().find(|(.., set)| *set && !depth.readable) {
+            return Err(Error::Invalid(format!(
+                "DepthDesc::{field} is set without DepthDesc::readable: tiles {act}, and need the host's own before its scope"
+            )));
         }
         let name = &device.info().name;
         let as_depth = vk::FormatFeatureFlags::DEPTH_STENCIL_ATTACHMENT;

@@ -171,16 +171,13 @@ impl Session {
         let tiles = frame.picture();
         submit(&self.device, renderer, &request, (target, frame), trace)?;
         let wall_ms = ms_since(begin);
-        let stats = renderer.newest().map(|frame| frame.stats());
+        let stats = renderer.newest().expect("it was prepared just now").stats();
         self.check_validation()?;
         match tiles {
             Some(tiles) => target.set_tiles(tiles, camera),
             None => target.set_held(settings.background),
         }
-        Ok(FrameStats {
-            wall_ms,
-            ..stats.unwrap_or_default()
-        })
+        Ok(FrameStats { wall_ms, ..stats })
     }
 
     /// Returns an error if the validation layer has said anything so far.

@@ -68,7 +68,8 @@ fn show(session: &mut Session, camera: &Camera, settings: &Settings) -> Outcome 
     renderer.outcome_of(frame)
 }
 
-/// The frame that shows how much room is needed is the last one, and not the oldest that is in flight. The first one has coarse lists.
+/// The frame that shows how much room is needed is the last one, and not the oldest that is in flight. The first one has coarse
+/// lists.
 #[test]
 fn a_picture_after_frames_in_flight_has_the_room_it_needs() {
     let (scene, camera) = crowded();

@@ -45,7 +45,7 @@ fn the_opening_waits_for_no_draw_that_has_been_waited_for() {
         [Draws::Around, Draws::After].map(|draws| Tracker::new(true, draws).opening());
     assert_eq!(after.src_stage_mask, around.src_stage_mask & !DRAW_STAGES);
     assert_eq!(after.src_access_mask, around.src_access_mask);
-    // What copies and edits have written is visible to draws without a barrier of their own.
+    // Draws see the writes of copies and edits without a barrier of their own.
     assert_eq!(after.dst_stage_mask, around.dst_stage_mask);
     assert_eq!(after.dst_access_mask, around.dst_access_mask);
 }

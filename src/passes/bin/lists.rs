@@ -14,8 +14,8 @@ memory! { EyePlan:
         let least = coarse_words(plan.gaussians(), 2);
         plan.when_tiled(4 * pairs(plan).max(least))
     };
-    /// Where each tile's list begins, and where the last one ends; one that begins where the next one does is empty. Behind them are
-    /// the two words by which glsl/coarse.glsl tells coarse lists.
+    /// Where each tile's list begins, and where the last one ends; one that begins where the next one does is empty. Behind them
+    /// are the two words by which glsl/coarse.glsl tells coarse lists.
     tile_begins: |plan| plan.when_tiled(4 * (u64::from(plan.data.tiles.tile_count) + 3)), in EyePlan::picture_location;
 }
 

@@ -33,7 +33,6 @@ fn plan(mode: Mode, planes: usize) -> EyePlan {
         occluders: None,
         expects_depth: false,
         write_alpha: None,
-        soft_depth: false,
         draws_motion: false,
         whole: None,
         colours: SplatColours::Scene,

@@ -55,8 +55,8 @@ fn hides(on: On<'_>, host: &Host, (world, truth): (&World, &Picture), map: Depth
     }
 }
 
-/// A depth that hides parts of splats cuts them as a far plane of the camera does, to first order of perspective: the affine form of
-/// the exact weights. Where a clip cuts them too, the two are taken along the line of sight, which is exact but for the low-pass.
+/// A depth that hides parts of splats cuts them as a far plane of the camera does, to first order of perspective: the affine form
+/// of the exact weights. Where a clip cuts them too, the two are taken along the line of sight, which is exact but for the low-pass.
 /// What the host has drawn nothing before stays whole.
 #[test]
 fn a_soft_depth_hides_what_a_far_plane_cuts() {

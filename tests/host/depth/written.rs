@@ -157,6 +157,7 @@ fn depths_that_cannot_be_written_are_refused() {
         let desc = |depth| RendererDesc::new(FLOATS).depth(Some(depth));
         for (depth, says) in [
             (depth.write_alpha(Some(0.5)).readable(false), "readable"),
+            (depth.soft(true).readable(false), "readable"),
             (depth.write_alpha(Some(0.0)), "above 0 and at most 1"),
             (depth.write_alpha(Some(1.5)), "above 0 and at most 1"),
             (depth.write_alpha(Some(f32::NAN)), "above 0 and at most 1"),

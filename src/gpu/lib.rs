@@ -38,6 +38,8 @@ mod layout;
 mod lent;
 #[allow(missing_docs)]
 mod memory;
+#[cfg(feature = "lab")]
+mod modules;
 mod open;
 #[allow(missing_docs)]
 mod pipeline;
@@ -73,6 +75,9 @@ pub use image::{Image, ImageDesc};
 pub use inspector::{CompiledShader, DispatchNote, DispatchedGroups, RecordedCommands};
 pub use lent::{LentMemory, Location, MemoryRequest, MemorySource};
 pub use memory::{Buffer, BufferDesc};
+#[cfg(feature = "lab")]
+#[doc(hidden)]
+pub use modules::replace_modules;
 pub use pipeline::{ComputeDesc, ComputePipeline, DepthUse, GraphicsDesc, GraphicsPipeline};
 pub use pipeline_cache::PipelineCacheId;
 pub use pipeline_file::{PipelineCache, PipelineFile};

@@ -3,7 +3,7 @@
 mod clock;
 mod judge;
 mod report;
-mod shapes;
+pub(crate) mod shapes;
 mod tables;
 mod variants;
 mod ways;

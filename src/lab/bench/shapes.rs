@@ -73,7 +73,7 @@ pub(crate) fn lines(
 
 /// The plane, and shapes about as large as the scene whose surfaces touch it in the same point and keep the same side there;
 /// then combinations of them, and a sphere around everything.
-fn regions(bounds: &Bounds, plane: Plane) -> Result<Vec<(&'static str, Expression)>> {
+pub(crate) fn regions(bounds: &Bounds, plane: Plane) -> Result<Vec<(&'static str, Expression)>> {
     let normal = plane.normal();
     let middle = bounds.centre() - normal * plane.distance(bounds.centre());
     let radius = bounds.radius();

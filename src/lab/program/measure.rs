@@ -16,12 +16,13 @@ use rara_lab::table::Table;
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Sections, in the order in which they run:
-  correct     compares every raster path and mode with the picture in double precision; always runs
+  correct     compares every raster path and mode with the picture in double precision; always runs, but for --unchecked
   passes      times each stage, by Gaussians, size (512, 1024, 2048), mode and raster path
   bound       compares a frame with the bytes, fragments and keys that it cannot avoid
   proportion  times frames that show a hundredth of a scene
   start       times a process of its own, from its start to its first picture
-  full-hd     times frames at 1920x1080, whole and cut in half, by stage and raster path
+  fixed       times dispatches that do nothing, one waiting for the other
+  full-hd     times frames at 1920x1080 by stage, whole and cut by a plane, a sphere and a combination, drawn with tiles
 
 Examples:
   rara-lab measure -o measured                # measures everything: nearly an hour on two cores
@@ -39,6 +40,9 @@ pub(super) struct Measure {
     /// Only check that everything runs, with tiny scenes and one round
     #[arg(long)]
     quick: bool,
+    /// Leave out section correct where other sections are named
+    #[arg(long, requires = "sections")]
+    unchecked: bool,
     /// Folder for bench.csv; created if it does not exist
     #[arg(short, long, value_name = "DIR", value_parser = one_file())]
     output: Option<PathBuf>,
@@ -57,6 +61,9 @@ pub(super) struct Measure {
     /// Most rounds; fewer, but at least three, if they take over half a minute [default: 9]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     rounds: Option<u32>,
+    /// A folder with SPIR-V modules, named as in glsl/spirv, that full-hd measures in the place of the program's own (repeatable)
+    #[arg(long, value_name = "DIR")]
+    modules: Vec<PathBuf>,
     /// Number of the device, or part of its name, as rara devices prints them
     #[arg(long, value_name = "N|NAME")]
     device: Option<String>,
@@ -73,12 +80,14 @@ impl Measure {
         make_drivers_folder();
         let options = RunTimeOptions {
             sections: self.sections.clone(),
+            unchecked: self.unchecked,
             quick: self.quick,
             scenes: self.scene_files.clone(),
             cameras: self.cameras.clone(),
             gaussians: self.gaussians.clone(),
             sizes: self.sizes.clone(),
             rounds: self.rounds,
+            modules: self.modules.clone(),
             device: HeadlessDesc::default().device(self.device.clone()),
         };
         if self.child {

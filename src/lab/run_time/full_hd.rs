@@ -1,32 +1,77 @@
-//! Frames at 1920x1080 by stage, whole and cut in half, on each raster path, with the camera that frames the scene.
+//! Frames at 1920x1080 by stage, whole and cut, with the camera that frames the scene: drawn with tiles by the program's own
+//! shaders, and by each variant of them that a folder holds.
+
+use std::path::Path;
 
 use glam::DVec3;
 use rara::scene::Bounds;
-use rara::{Camera, Clip, ClipOp, Mode, Plane, Result};
+use rara::{Camera, Clip, Mode, Picture, Plane, Raster, Result};
+use rara_gpu::replace_modules;
 
 use super::numbers::Measurements;
-use super::run::{Run, in_mode, rasters};
+use super::run::{Run, in_mode};
 use super::world::World;
+use crate::bench::shapes::regions;
 use crate::frames::{in_turn, timed};
 
 const SIZE: (u32, u32) = (1920, 1080);
 
+/// The regions that cut the scene in half, after the whole one.
+const REGIONS: [&str; 3] = ["plane", "sphere", "box and not sphere"];
+
 pub(super) fn measure(run: &mut Run<'_>, world: &World, numbers: Measurements) -> Result<()> {
-    let mut headless = run.headless(world)?;
-    let camera = Camera::frame(&Bounds::of(&world.scene), -DVec3::Y, 50.0, SIZE)?;
-    let mut rasters = rasters(&headless);
-    rasters.retain(|(name, _)| run.allows("exact", name));
-    let half = Clip::of([Plane::new(DVec3::X, 0.0)?], ClipOp::And);
-    for (clip, how) in [(Clip::default(), "whole"), (half, "cut")] {
-        let frames = in_turn(run.rounds(), rasters.len(), |index, _| {
-            let settings = in_mode(Mode::Exact).raster(rasters[index].1);
-            timed(&mut headless, &camera, &clip, &settings)
+    if !run.allows("exact", "tiles") {
+        return Ok(());
+    }
+    let bounds = Bounds::of(&world.scene);
+    let plane = Plane::new(DVec3::X, -bounds.centre().x)?;
+    let mut clips = vec![("whole", Clip::default())];
+    for (name, region) in regions(&bounds, plane)? {
+        if REGIONS.contains(&name) {
+            clips.push((name, region.clip()));
+        }
+    }
+    let folders: Vec<_> = run.options.modules.clone();
+    let variants: Vec<Option<&Path>> = [None]
+        .into_iter()
+        .chain(folders.iter().map(|folder| Some(folder.as_path())))
+        .collect();
+    let mut drawn = variants
+        .iter()
+        .map(|_| run.headless(world))
+        .collect::<Result<Vec<_>>>()?;
+    let size = match run.options.sizes.first() {
+        Some(&width) => (width, width * SIZE.1 / SIZE.0),
+        None => SIZE,
+    };
+    let camera = Camera::frame(&bounds, -DVec3::Y, 50.0, size)?;
+    let settings = in_mode(Mode::Exact).raster(Raster::Tiles);
+    for (name, clip) in &clips {
+        let frames = in_turn(run.rounds(), variants.len(), |index, _| {
+            replace_modules(variants[index]);
+            timed(&mut drawn[index], &camera, clip, &settings)
         })?;
-        let mut numbers = numbers.for_pictures(SIZE.into(), how);
-        for ((name, _), frames) in rasters.iter().zip(&frames) {
-            numbers.add_frames(name, frames);
+        let mut numbers = numbers.for_pictures(size.into(), name);
+        let pictures = drawn.iter_mut().map(|headless| headless.picture());
+        let pictures = pictures.collect::<Result<Vec<Picture>>>()?;
+        for ((variant, frames), picture) in variants.iter().zip(&frames).zip(&pictures) {
+            let folder = variant.and_then(Path::file_name);
+            let name = folder.map_or("exact".into(), |name| name.to_string_lossy());
+            numbers.add_frames(&name, frames);
+            if variant.is_some() {
+                let apart = apart(picture, &pictures[0]);
+                numbers.add(&name, "apart from the first", "of 255", vec![apart]);
+            }
         }
         run.finish(&numbers)?;
     }
+    replace_modules(None);
     Ok(())
+}
+
+/// How far the channels of two pictures of one size are apart at most, of 255.
+fn apart(a: &Picture, b: &Picture) -> f64 {
+    let channels = a.pixels.iter().flatten().zip(b.pixels.iter().flatten());
+    let apart = channels.map(|(a, b)| f64::from((a - b).abs()));
+    255.0 * apart.fold(0.0, f64::max)
 }

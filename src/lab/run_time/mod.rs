@@ -3,6 +3,7 @@
 
 mod bound;
 mod correct;
+mod fixed;
 mod fragments;
 mod full_hd;
 mod numbers;
@@ -30,7 +31,7 @@ use world::World;
 type Section = fn(&mut Run<'_>, &World, Measurements) -> Result<()>;
 
 /// The sections in the order in which they run: their names, and the sizes and the measurement of generated scenes.
-const SECTIONS: [(&str, &[u32], Section); 6] = [
+const SECTIONS: [(&str, &[u32], Section); 7] = [
     (CORRECT, &[5000], correct::measure),
     (
         "passes",
@@ -40,6 +41,7 @@ const SECTIONS: [(&str, &[u32], Section); 6] = [
     ("bound", &[100_000, 1_000_000, 5_000_000], bound::measure),
     ("proportion", &[2_000_000, 5_000_000], proportion::measure),
     ("start", &[500_000], start::measure),
+    ("fixed", &[1000], fixed::measure),
     ("full-hd", &[1_000_000, 5_000_000], full_hd::measure),
 ];
 const CORRECT: &str = "correct";
@@ -76,7 +78,7 @@ fn sections_of(run: &mut Run<'_>) -> Result<()> {
     for (section, usual, measure) in SECTIONS {
         let mut chosen = options.sections.iter();
         let is_chosen = options.sections.is_empty() || chosen.any(|name| name == section);
-        if !is_chosen && section != CORRECT {
+        if !is_chosen && (section != CORRECT || options.unchecked) {
             continue;
         }
         if !options.scenes.is_empty() {

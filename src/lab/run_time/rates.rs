@@ -103,6 +103,63 @@ impl Rates {
         Ok(fragments as f64 / least)
     }
 
+    /// Microseconds that a dispatch takes in a chain of them, each of which waits for the one before, by kind.
+    pub(super) fn fixed(&self) -> Result<Vec<(&'static str, f64)>> {
+        /// Workgroups of a dispatch that is not tiny.
+        const MANY: u32 = 1024;
+        let [from, to] = [&self.source, &self.target];
+        let one = |_| Groups::Indirect(&self.splats, 0);
+        let none = |_| Groups::Indirect(&self.splats, 16);
+        let written = |even| Groups::Indirect(if even { from } else { to }, 0);
+        Ok(vec![
+            ("direct", self.chain(64, false, |_| Groups::Count(1))?),
+            (
+                "direct, many workgroups",
+                self.chain(64 * MANY, false, |_| Groups::Count(MANY))?,
+            ),
+            ("indirect", self.chain(64, false, one)?),
+            ("indirect, none", self.chain(64, false, none)?),
+            (
+                "indirect, written by the one before",
+                self.chain(64, false, written)?,
+            ),
+            (
+                "fill, then direct",
+                self.chain(64, true, |_| Groups::Count(1))?,
+            ),
+        ])
+    }
+
+    /// Copies so many words of 16 bytes there and back; `groups` hears whether the way is there.
+    fn chain<'a>(
+        &'a self,
+        words: u32,
+        fills: bool,
+        groups: impl Fn(bool) -> Groups<'a>,
+    ) -> Result<f64> {
+        const CHAIN: u32 = 256;
+        let [from, to] = [&self.source, &self.target];
+        // Every word is a command for one workgroup; those for none are with the splats.
+        self.seconds(|recorder| {
+            recorder.fill(&self.splats, 0, 16, 1);
+            recorder.fill(&self.splats, 16, 16, 0);
+            for buffer in [from, to] {
+                recorder.fill(buffer, 0, 1 << 16, 1);
+            }
+        })?;
+        let seconds = self.seconds(|recorder| {
+            for link in 0..CHAIN {
+                let even = link % 2 == 0;
+                let buffers = if even { [from, to] } else { [to, from] };
+                if fills {
+                    recorder.fill(buffers[0], 0, 64, 1);
+                }
+                recorder.dispatch(&self.copy, &buffers, &[words], groups(even));
+            }
+        })?;
+        Ok(1e6 * seconds / f64::from(CHAIN))
+    }
+
     /// How many seconds the device takes for a recording.
     fn seconds(&self, record: impl FnOnce(&mut Recorder<'_>)) -> Result<f64> {
         let mut timer = Timer::new(&self.device, 1)?;

@@ -12,8 +12,9 @@ use crate::table::Table;
 
 #[derive(Debug, Clone, Default)]
 pub struct RunTimeOptions {
-    /// The names of the sections; all if empty. `correct` is measured in any case.
+    /// The names of the sections; all if empty. `correct` is measured in any case, but for `unchecked`.
     pub sections: Vec<String>,
+    pub unchecked: bool,
     /// Tiny scenes and one round: only whether everything runs.
     pub quick: bool,
     /// Scene files in place of generated scenes.
@@ -25,6 +26,8 @@ pub struct RunTimeOptions {
     /// Widths of pictures; sections other than `passes` take the first.
     pub sizes: Vec<u32>,
     pub rounds: Option<u32>,
+    /// Folders of SPIR-V modules, each a variant of the shaders, which section `full-hd` measures beside the program's own.
+    pub modules: Vec<PathBuf>,
     pub device: HeadlessDesc,
 }
 

@@ -36,9 +36,9 @@ uint tie_bits_place(uint number) {
     return 1u + (stretches + 1u) * MOST_LARGE_TIES + number / 32u;
 }
 
-// In `tie_members`: who has a number, and behind room for all of them of which tie it is one.
+// In `tie_members`: who has a number, and behind the splats' numbers of which tie it is one.
 uint tie_place(uint number) {
-    return CUT.scene.gaussian_count + number;
+    return 2u * CUT.scene.gaussian_count + number;
 }
 
 #endif

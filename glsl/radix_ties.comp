@@ -5,6 +5,7 @@
 // in which their numbers differ. Of large ties, each workgroup sends its own to their numbers (large_ties.glsl).
 #include "radix_carry.glsl"
 #include "large_ties.glsl"
+#include "splat_gaussians.glsl"
 
 layout(local_size_x = RADIX_GROUP_SIZE) in;
 
@@ -12,21 +13,15 @@ BUFFER(readonly, 1, FrameCounts, counts)
 BUFFER(readonly, 2, uint, keys)
 BUFFER(coherent, 3, uint, order)
 BUFFER(coherent, 4, uint, scratch)
-BUFFER(readonly, 5, uint, splat_gaussians)
-BUFFER(readonly, 6, Gaussian, gaussians)
-// The numbers of those that are sorted by digits, by splat.
-BUFFER(coherent, 7, uint, numbers)
-BUFFER(, 8, uint, large_ties)
-BUFFER(writeonly, 9, uint, tie_members)
+BUFFER(readonly, 5, uint, depth_keys)
+BUFFER(, 6, uint, large_ties)
+// The buffer of the depth keys, but for the splats' numbers.
+BUFFER(writeonly, 7, uint, tie_members)
 #define STEPS RADIX_KEYS
 #include "ties.glsl"
 
 uint number(uint splat_index) {
-    return floatBitsToUint(gaussians.at[splat_gaussians.at[splat_index]].scale.w);
-}
-
-void keep_number(uint splat_index, uint its_number) {
-    numbers.at[splat_index] = its_number;
+    return depth_keys.at[number_place(splat_index)];
 }
 
 // Most that an invocation orders alone: its numbers have room in its part of `items`.
@@ -160,7 +155,7 @@ void sort_by_digit(bool second, uint begin, uint end, uint digit_number) {
         for (uint k = 0u; k < RADIX_KEYS; k++) {
             uint i = first + k * RADIX_GROUP_SIZE + local;
             if (i < end) {
-                atomicAdd(offsets[digit(numbers.at[at(second, i)], digit_number)], 1u);
+                atomicAdd(offsets[digit(number(at(second, i)), digit_number)], 1u);
             }
         }
     }
@@ -173,7 +168,7 @@ void sort_by_digit(bool second, uint begin, uint end, uint digit_number) {
         uint digits[RADIX_KEYS];
         for (uint k = 0u; k < RADIX_KEYS; k++) {
             uint position = position_of(k);
-            digits[k] = position < count ? digit(numbers.at[at(second, first + position)], digit_number) : DIGITS - 1u;
+            digits[k] = position < count ? digit(number(at(second, first + position)), digit_number) : DIGITS - 1u;
         }
         sort_positions(digits);
         uint own[RADIX_KEYS];

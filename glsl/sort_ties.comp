@@ -23,9 +23,6 @@ uint number(uint splat_index) {
     return depth_keys.at[number_place(splat_index)];
 }
 
-// They are known of all splats.
-void keep_number(uint, uint) {}
-
 // Most that a workgroup merges. Beyond, the steps of the merges outweigh the histograms of the digits.
 const uint MANY = 4096u;
 

@@ -8,8 +8,8 @@ uint cut_place(uint splat_index) {
     return CUT.scene.gaussian_count + splat_index;
 }
 
-// The buffer `depth_keys` holds the key of each splat, and for the sort by runs, behind room for as many as there are Gaussians,
-// its number in the scene: Gaussians are so far apart that splats of one depth would wait for theirs.
+// The buffer `depth_keys` holds the key of each splat, and behind room for as many as there are Gaussians its number in the scene:
+// Gaussians are so far apart that splats of one depth would wait for theirs.
 uint number_place(uint splat_index) {
     return CUT.scene.gaussian_count + splat_index;
 }

@@ -7,9 +7,6 @@
 // A splat's number in the scene. The includer says where it is.
 uint number(uint splat_index);
 
-// Called with the number of each splat before it is sorted by digits.
-void keep_number(uint splat_index, uint its_number);
-
 uint at(bool second, uint i) {
     return second ? scratch.at[i] : order.at[i];
 }
@@ -60,16 +57,10 @@ void sort_together(uint begin, uint end) {
     uint first_number = number(order.at[begin]);
     uint differs = 0u;
     for (uint first = begin; first < end; first += STEPS * gl_WorkGroupSize.x) {
-        uint own[STEPS];
-        uint its_numbers[STEPS];
         for (uint k = 0u; k < STEPS; k++) {
+            // Those beyond the end repeat the last one.
             uint i = first + k * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
-            own[k] = order.at[min(i, end - 1u)];
-            its_numbers[k] = number(own[k]);
-        }
-        for (uint k = 0u; k < STEPS; k++) {
-            keep_number(own[k], its_numbers[k]); // those beyond the end repeat the last one
-            differs |= its_numbers[k] ^ first_number;
+            differs |= number(order.at[min(i, end - 1u)]) ^ first_number;
         }
     }
     atomicOr(differing, differs);

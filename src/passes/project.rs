@@ -34,10 +34,14 @@ memory! { EyePlan:
         false => 0,
     };
     /// The keys of the splats' depths, and behind them the splats' numbers where the sort needs these; with pipelines for GPUs
-    /// always twice as much as the keys, since their sort has a use for it later.
-    depth_keys: |plan| match plan.cut.shape {
-        DeviceShape::Cpu => (4 + 4 * u64::from(finds_numbers(plan))) * plan.gaussians(),
-        DeviceShape::Gpu { .. } => 8 * plan.gaussians(),
+    /// also room for the ties that their sort finds.
+    depth_keys: |plan| {
+        let lists = match (plan.reordered, plan.cut.shape) {
+            (false, _) => 1,
+            (true, DeviceShape::Cpu) => 2,
+            (true, DeviceShape::Gpu { .. }) => 3,
+        };
+        4 * lists * plan.gaussians()
     };
     /// Which tiles each splat touches; empty where tiles are not wanted. Pipelines for GPUs have words of the splats' rectangles
     /// behind the masks (glsl/rects.glsl).
@@ -49,11 +53,6 @@ memory! { EyePlan:
 
 /// Splats of an invocation on processors.
 const TURNS: u32 = 8;
-
-/// True where the sort finds the splats' numbers beside their keys.
-fn finds_numbers(plan: &EyePlan) -> bool {
-    plan.reordered && plan.cut.shape == DeviceShape::Cpu
-}
 
 /// The shader reads spherical harmonics in one format; without cut splats it reads no cutoff records.
 impl FromPlan<EyePlan> for project::Constants {
@@ -71,7 +70,7 @@ impl FromPlan<EyePlan> for project::Constants {
             quads: plan.needs_quads(),
             rects: plan.keeps_rects(),
             colours: plan.way.colours.code(),
-            numbers: finds_numbers(plan),
+            numbers: plan.reordered,
             local_size_x: match plan.cut.shape {
                 DeviceShape::Cpu => limits::SPLAT_GROUP_SIZE / TURNS,
                 DeviceShape::Gpu { .. } => limits::SPLAT_GROUP_SIZE,

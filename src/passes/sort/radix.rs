@@ -2,13 +2,13 @@
 //! `histogram`, and `large_ties` for those of one depth that are more than a workgroup orders.
 
 use crate::passes::eye_plan::EyePlan;
+use crate::passes::project;
 use crate::passes::radix::{Keys, Pass, RadixPipelines};
 use crate::passes::recording::{Groups, Recording, counted};
 use crate::passes::shaders::{radix_large_ties, radix_ties};
-use crate::passes::shared::{self, SCENE};
+use crate::passes::shared;
 use crate::passes::sort::keys::{KEYS, MEMORY, ORDER, groups_of_count, groups_of_pass, stretches};
 use crate::passes::storage::buffers;
-use crate::passes::{compact, project};
 
 /// Sorts as the other pipelines do (`runs.rs`), pass by pass, and leaves out the same passes.
 pub(super) fn record(recording: &mut Recording<'_, '_, EyePlan>) {
@@ -35,13 +35,11 @@ pub(super) fn record(recording: &mut Recording<'_, '_, EyePlan>) {
         recording.fill(&MEMORY.large_ties, 0);
         let buffers = buffers!(radix_ties {
             shared::MEMORY => [frame, counts],
-            SCENE => [gaussians],
-            compact::MEMORY => [splat_gaussians],
             MEMORY => [large_ties];
             keys: KEYS[sorted],
             order: ORDER[sorted],
             scratch: ORDER[sorted ^ 1],
-            numbers: KEYS[sorted ^ 1],
+            depth_keys,
             // Whose keys have been carried away.
             tie_members: depth_keys,
         });

@@ -8,8 +8,9 @@ use super::desc::AdoptDesc;
 use super::requirements::Support;
 use rara_base::error::{Error, Result};
 
-/// The remedy where a function of the version's own is missing.
-const ENABLE: &str = "create the device with the extensions and features that gpu::check names";
+/// The remedy where a function of the version's own is missing, which drivers hide where the instance was made for less.
+const MAKE_OR_SAY: &str = "create the instance for the Vulkan version that AdoptDesc::api_version says \
+                           (VkApplicationInfo::apiVersion), or say there for which it was created";
 
 /// The remedy where a function of an extension is missing that the version needs.
 const ENABLE_OR_SAY: &str = "create the device with the extensions and features that gpu::check names, or, if the instance was \
@@ -32,14 +33,14 @@ pub(super) fn number(version: u32) -> String {
 pub(super) unsafe fn check(desc: &AdoptDesc, support: &Support) -> Result<()> {
     let core = support.api_version >= vk::API_VERSION_1_3;
     let needed: [(bool, &CStr, &str, &str); 8] = [
-        (true, c"vkCreateRenderPass2", "Vulkan 1.2", ENABLE),
+        (true, c"vkCreateRenderPass2", "Vulkan 1.2", MAKE_OR_SAY),
         (
             support.buffer_device_address,
             c"vkGetBufferDeviceAddress",
             "bufferDeviceAddress",
             "enable it, or set the description's buffer_device_address to false",
         ),
-        (core, c"vkCmdPipelineBarrier2", "Vulkan 1.3", ENABLE),
+        (core, c"vkCmdPipelineBarrier2", "Vulkan 1.3", MAKE_OR_SAY),
         (
             !core,
             c"vkCmdPipelineBarrier2KHR",

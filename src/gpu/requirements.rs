@@ -142,12 +142,32 @@ pub unsafe fn check(
         }
     }
 
+    let has_sizes = has_1_3 || has(ext::subgroup_size_control::NAME);
+    let mut v11 = vk::PhysicalDeviceVulkan11Properties::default();
+    let mut v13_limits = vk::PhysicalDeviceVulkan13Properties::default();
+    let mut size_limits = vk::PhysicalDeviceSubgroupSizeControlProperties::default();
+    let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut v11);
+    if has_sizes {
+        properties = properties.push_next(&mut size_limits);
+    }
+    if has_1_3 {
+        properties = properties.push_next(&mut v13_limits);
+    }
+    // SAFETY: as above.
+    unsafe { instance.get_physical_device_properties2(physical, &mut properties) };
+    // Every device has subgroups; the loader asks none where the instance was made for Vulkan 1.0.
+    if v11.subgroup_size == 0 {
+        return Err(Error::Invalid(format!(
+            "the instance was created for less than Vulkan {}, which it is said to be for: set VkApplicationInfo::apiVersion",
+            number(api_version)
+        )));
+    }
+
     let mut v12 = vk::PhysicalDeviceVulkan12Features::default();
     let mut synchronization2 = vk::PhysicalDeviceSynchronization2Features::default();
     let mut dynamic_rendering = vk::PhysicalDeviceDynamicRenderingFeatures::default();
     let mut mesh = vk::PhysicalDeviceMeshShaderFeaturesEXT::default();
     let mut sizes = vk::PhysicalDeviceSubgroupSizeControlFeatures::default();
-    let has_sizes = has_1_3 || has(ext::subgroup_size_control::NAME);
     let mut features = vk::PhysicalDeviceFeatures2::default()
         .push_next(&mut v12)
         .push_next(&mut synchronization2)
@@ -177,18 +197,6 @@ pub unsafe fn check(
         return lacks("no queue family has both graphics and compute".into());
     };
 
-    let mut v11 = vk::PhysicalDeviceVulkan11Properties::default();
-    let mut v13_limits = vk::PhysicalDeviceVulkan13Properties::default();
-    let mut size_limits = vk::PhysicalDeviceSubgroupSizeControlProperties::default();
-    let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut v11);
-    if has_sizes {
-        properties = properties.push_next(&mut size_limits);
-    }
-    if has_1_3 {
-        properties = properties.push_next(&mut v13_limits);
-    }
-    // SAFETY: as above.
-    unsafe { instance.get_physical_device_properties2(physical, &mut properties) };
     let limits = base.limits;
     let group = limits
         .max_compute_work_group_invocations

@@ -292,3 +292,48 @@ fn a_device_without_addresses_draws_the_same_bytes() {
     let opaque = |pixels: &Vec<[f32; 4]>| pixels.iter().any(|pixel| pixel[3] > 0.5);
     assert!(usual.iter().flatten().all(opaque));
 }
+
+/// What a host says of its instance cannot be asked of Vulkan, but what it then lacks can.
+#[test]
+fn an_instance_made_for_less_than_is_said_is_told_so() {
+    for made_for in [
+        vk::API_VERSION_1_0,
+        vk::API_VERSION_1_1,
+        vk::API_VERSION_1_2,
+    ] {
+        // SAFETY: every handle is used while it is alive, and destroyed once, in order; what is pointed to outlives the calls.
+        unsafe {
+            let entry = ManuallyDrop::new(Entry::load().expect("a Vulkan loader"));
+            let application = vk::ApplicationInfo::default().api_version(made_for);
+            let info = vk::InstanceCreateInfo::default().application_info(&application);
+            let instance = entry.create_instance(&info, None).expect("an instance");
+            let part = std::env::var("RARA_TEST_DEVICE").unwrap_or_default();
+            let devices = instance.enumerate_physical_devices().expect("devices");
+            let mut devices = devices.into_iter().filter(|device| {
+                let name = instance.get_physical_device_properties(*device);
+                let name = name
+                    .device_name_as_c_str()
+                    .unwrap_or_default()
+                    .to_string_lossy();
+                name.contains(&part)
+            });
+            let physical = devices.next().expect("the device under test");
+            let queues = [vk::DeviceQueueCreateInfo::default().queue_priorities(&[1.0])];
+            let info = vk::DeviceCreateInfo::default().queue_create_infos(&queues);
+            let raw = instance
+                .create_device(physical, &info, None)
+                .expect("a device");
+            let queue = (raw.get_device_queue(0, 0), 0);
+            let lent = AdoptDesc::new(VERSION, instance.clone(), physical, raw.clone(), queue);
+            let refused = gpu::Device::adopt(lent)
+                .expect_err("it was made for less")
+                .to_string();
+            assert!(
+                refused.contains("VkApplicationInfo::apiVersion"),
+                "{refused}"
+            );
+            raw.destroy_device(None);
+            instance.destroy_instance(None);
+        }
+    }
+}

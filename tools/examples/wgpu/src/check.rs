@@ -4,13 +4,13 @@ use half::f16;
 use rara::glam::DMat4;
 use rara::gpu::{Bindings, PipelineCache};
 use rara::scene::{Kind, generate};
-use rara::{Gaussians, Headless, HeadlessDesc, Picture, Precision, TargetFormat};
+use rara::{Camera, Gaussians, Headless, HeadlessDesc, Picture, Precision, TargetFormat};
 use wgpu::hal::api::Vulkan;
 
 use crate::Failure;
 use crate::host::Host;
 use crate::meshes::{Meshes, Wall};
-use crate::splats::Splats;
+use crate::splats::{Eye, Splats};
 use crate::target::Target;
 use crate::world::{BACKGROUND, World};
 
@@ -35,15 +35,23 @@ pub(crate) fn check(device: &str) -> Result<(), Failure> {
             .pipeline_cache(PipelineCache::Off),
     )?;
     for (format, target) in FORMATS {
-        let truth = draw_headless(&mut headless, &world, &world.scene, target)?;
-        let bare = draw(&host, &world, format, world.nothing(), true)?;
-        if bare != bytes_of(&truth, target) {
-            let apart = apart(&pixels(&bare, target), &truth.pixels);
-            return Err(format!("{format:?}: not the headless bytes, by {apart}/255").into());
+        let camera = world.view.camera;
+        for eyes in [&[camera][..], &world.eyes()] {
+            let drawn = draw(&host, &world, format, world.nothing(), eyes, true)?;
+            for (bytes, camera) in drawn.iter().zip(eyes) {
+                let truth = draw_headless(&mut headless, &world, &world.scene, camera, target)?;
+                if *bytes != bytes_of(&truth, target) {
+                    let apart = apart(&pixels(bytes, target), &truth.pixels);
+                    return Err(
+                        format!("{format:?}: not the headless bytes, by {apart}/255").into(),
+                    );
+                }
+            }
+            let (eyes, bytes) = (drawn.len(), drawn.concat().len());
+            println!("{format:?}, eyes: {eyes}: {bytes} bytes, all as headless");
         }
-        println!("{format:?}: {} bytes, all as headless", bare.len());
 
-        let furnished = draw(&host, &world, format, world.furniture(), true)?;
+        let furnished = draw(&host, &world, format, world.furniture(), &[camera], true)?.remove(0);
         let expected = over_furniture(&mut headless, &world)?;
         let apart = apart(&pixels(&furnished, target), &expected);
         // A blend into 8 bits is of 8-bit arithmetic on lavapipe, which truncates to halves too.
@@ -68,7 +76,8 @@ pub(crate) fn check(device: &str) -> Result<(), Failure> {
 pub(crate) fn careless(device: &str) -> Result<(), Failure> {
     let world = World::new(generate(Kind::General, 300, 5), SIZE)?;
     let host = Host::new(device, true)?;
-    draw(&host, &world, FORMATS[0].0, world.furniture(), false)?;
+    let (format, camera) = (FORMATS[0].0, world.view.camera);
+    draw(&host, &world, format, world.furniture(), &[camera], false)?;
     let buffer = host.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("written twice"),
         size: 16,
@@ -98,21 +107,30 @@ pub(crate) fn careless(device: &str) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The bytes of the third frame in the host.
+/// The bytes of the third frame in the host, for each eye.
 fn draw(
     host: &Host,
     world: &World,
     format: wgpu::TextureFormat,
     furniture: (wgpu::Color, &[Wall], DMat4),
+    cameras: &[Camera],
     careful: bool,
-) -> Result<Vec<u8>, Failure> {
-    let target = Target::new(host, format, world.size);
+) -> Result<Vec<Vec<u8>>, Failure> {
+    let target = || Target::new(host, format, world.size);
+    let targets: Vec<_> = cameras.iter().map(|_| target()).collect();
     let meshes = Meshes::new(host, format, furniture);
-    let mut splats = Splats::new(host, &world.scene, format, &world.view)?;
+    let eyes = targets.iter().zip(cameras).map(|(target, camera)| Eye {
+        meshes: &meshes,
+        target,
+        camera: *camera,
+    });
+    let eyes: Vec<_> = eyes.collect();
+    let mut splats = Splats::new(host, &world.scene, format, &world.view, eyes.len())?;
     for _ in 0..3 {
-        splats.frame(host, (&meshes, &target), &world.view, careful)?;
+        splats.frame(host, &eyes, &world.view, careful)?;
     }
-    let bytes = target.bytes(host)?; // waits for all frames, so that everything may be dropped
+    let bytes = targets.iter().map(|target| target.bytes(host)); // waits for all frames, so that everything may be dropped
+    let bytes = bytes.collect::<Result<Vec<_>, _>>()?;
     match splats.path() {
         "tiles" => Ok(bytes),
         path => Err(format!("splats were drawn by {path}").into()),
@@ -123,21 +141,23 @@ fn draw_headless(
     headless: &mut Headless,
     world: &World,
     scene: &Gaussians,
+    camera: &Camera,
     format: TargetFormat,
 ) -> Result<Picture, Failure> {
     let view = &world.view;
     headless.load(scene)?;
     let precision = Precision::default().target(format);
     let settings = view.settings.precision(precision);
-    headless.render(&view.camera, &view.clip, &settings)?;
+    headless.render(camera, &view.clip, &settings)?;
     Ok(headless.picture()?)
 }
 
 /// The headless picture over background and wall: before the wall, of the Gaussians that are nearer.
 fn over_furniture(headless: &mut Headless, world: &World) -> Result<Vec<[f32; 4]>, Failure> {
     let float = TargetFormat::Float;
-    let whole = draw_headless(headless, world, &world.scene, float)?;
-    let part = draw_headless(headless, world, &world.before_wall(), float)?;
+    let camera = &world.view.camera;
+    let whole = draw_headless(headless, world, &world.scene, camera, float)?;
+    let part = draw_headless(headless, world, &world.before_wall(), camera, float)?;
     let [left, top, right, bottom] = world.wall_area;
     let mut hidden = 0;
     let pixel = |at: usize| {

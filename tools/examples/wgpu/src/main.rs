@@ -19,7 +19,7 @@ use half::f16;
 use host::Host;
 use meshes::Meshes;
 use rara::scene::{Kind, generate};
-use splats::Splats;
+use splats::{Eye, Splats};
 use target::Target;
 use world::World;
 
@@ -59,9 +59,14 @@ fn picture(device: &str, path: &str) -> Result<(), Failure> {
     let format = wgpu::TextureFormat::Rgba16Float;
     let target = Target::new(&host, format, world.size);
     let meshes = Meshes::new(&host, format, world.furniture());
-    let mut splats = Splats::new(&host, &world.scene, format, &world.view)?;
+    let mut splats = Splats::new(&host, &world.scene, format, &world.view, 1)?;
+    let eye = Eye {
+        meshes: &meshes,
+        target: &target,
+        camera: world.view.camera,
+    };
     for _ in 0..8 {
-        splats.frame(&host, (&meshes, &target), &world.view, true)?;
+        splats.frame(&host, std::slice::from_ref(&eye), &world.view, true)?;
     }
     let bytes = target.bytes(&host)?;
     let halves = bytes.chunks_exact(2);

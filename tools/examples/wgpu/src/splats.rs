@@ -3,8 +3,8 @@
 use rara::ash::vk;
 use rara::gpu::{Bindings, WriteOnly};
 use rara::{
-    Camera, Clip, DepthDesc, DepthMap, Gaussians, Renderer, RendererDesc, SceneBuffers, Settings,
-    ShFormat, Staging,
+    Camera, Clip, Cut, DepthDesc, DepthMap, Gaussians, PreparedFrame, Renderer, RendererDesc,
+    Result, SceneBuffers, Settings, ShFormat, Staging,
 };
 use wgpu::hal::api::Vulkan;
 
@@ -25,8 +25,18 @@ pub(crate) struct View {
     pub(crate) settings: Settings,
 }
 
+/// An eye of a frame: what the host draws before it, into what, and the camera.
+pub(crate) struct Eye<'a> {
+    pub(crate) meshes: &'a Meshes,
+    pub(crate) target: &'a Target,
+    pub(crate) camera: Camera,
+}
+
 pub(crate) struct Splats {
-    renderer: Renderer,
+    /// One for each eye.
+    renderers: Vec<Renderer>,
+    /// What the clip keeps, which is found once for all eyes.
+    cut: Cut,
     scene: SceneBuffers,
     /// The submissions of the last frames, the oldest first.
     in_flight: Vec<wgpu::SubmissionIndex>,
@@ -45,79 +55,105 @@ impl Drop for Splats {
 }
 
 impl Splats {
-    /// Uploads a scene, and makes a renderer into targets of a format.
+    /// Uploads a scene, and makes a renderer for each of so many eyes, into targets of a format.
     pub(crate) fn new(
         host: &Host,
         scene: &Gaussians,
         format: wgpu::TextureFormat,
         view: &View,
-    ) -> Result<Self, Failure> {
+        eyes: usize,
+    ) -> std::result::Result<Self, Failure> {
         let depth = DepthDesc::new(vk::Format::D32_SFLOAT, view.depth).readable(true);
         let desc = RendererDesc::new(vulkan(format)?)
             .depth(Some(depth))
             .bindings(Bindings::suiting(&host.rara))
             .frames_in_flight(FRAMES);
+        let first = Renderer::new(&host.rara, desc)?;
+        let cut = Cut::new(&first);
+        let mut renderers = vec![first];
+        while renderers.len() < eyes {
+            renderers.push(renderers[0].sharing(desc)?);
+        }
         Ok(Self {
-            renderer: Renderer::new(&host.rara, desc)?,
+            renderers,
+            cut,
             scene: upload(host, scene)?,
             in_flight: Vec::new(),
             device: host.device.clone(),
         })
     }
 
-    /// Draws a frame: the host's meshes, splats before and behind them, and the copy that reads the picture back. All of it is
-    /// one submission. Without `careful` a transition is left out, which the validation layer has to see.
+    /// Draws a frame: for each eye the host's meshes, splats before and behind them, and the copy that reads the picture back. All
+    /// of it is one submission. Without `careful` a transition is left out, which the validation layer has to see.
     pub(crate) fn frame(
         &mut self,
         host: &Host,
-        (meshes, target): (&Meshes, &Target),
+        eyes: &[Eye<'_>],
         view: &View,
         careful: bool,
-    ) -> Result<(), Failure> {
+    ) -> std::result::Result<(), Failure> {
         if self.in_flight.len() == FRAMES as usize {
             host.wait(Some(self.in_flight.remove(0)))?;
         }
-        let (renderer, scene) = (&mut self.renderer, &self.scene);
-        let frame = renderer.configure(scene, &view.camera, &view.clip, &view.settings)?;
+        let (renderers, cut, scene) = (&mut self.renderers, &mut self.cut, &self.scene);
+        cut.configure(scene, &view.clip, &view.settings)?;
+        let mut frames = Vec::new();
+        for (renderer, eye) in renderers.iter_mut().zip(eyes) {
+            frames.push(renderer.configure(scene, &eye.camera, &*cut, &view.settings)?);
+        }
 
         // 1. wgpu draws, then brings its textures to where rara wants them: colours to be drawn onto once more, for which they
         //    need a barrier although their layout stays, and depths to be copied.
         let mut encoder = encoder(host, "meshes");
-        meshes.draw(&mut encoder, target);
-        let again = (&target.color, wgpu::TextureUses::COLOR_TARGET);
-        let copied = careful.then_some((&target.depth, wgpu::TextureUses::COPY_SRC));
-        transition(&mut encoder, [again].into_iter().chain(copied));
+        for Eye { meshes, target, .. } in eyes {
+            meshes.draw(&mut encoder, target);
+            let again = (&target.color, wgpu::TextureUses::COLOR_TARGET);
+            let copied = careful.then_some((&target.depth, wgpu::TextureUses::COPY_SRC));
+            transition(&mut encoder, [again].into_iter().chain(copied));
+        }
         let drawn = encoder.finish();
 
         // 2. rara's stages, outside any scope.
-        let (prepared, stages) = host.raw("splats' stages", |cmd| {
-            // SAFETY: `cmd` is recording outside any scope, wgpu has made the depths visible to copies, and all is kept until
-            // the frame has executed.
-            unsafe { renderer.prepare(cmd, scene, Some(&target.depth_image()), frame) }
+        let (prepared, stages) = host.raw("splats' stages", |cmd| -> Result<Vec<PreparedFrame>> {
+            // SAFETY: `cmd` is recording outside any scope, and all is kept until the frame has executed.
+            unsafe { cut.prepare(cmd) }?;
+            let of_eyes = renderers.iter_mut().zip(eyes).zip(frames);
+            let prepared = of_eyes.map(|((renderer, eye), frame)| {
+                // SAFETY: as above; wgpu has made the depths visible to copies.
+                unsafe { renderer.prepare(cmd, scene, Some(&eye.target.depth_image()), frame) }
+            });
+            prepared.collect()
         });
-        let frame = prepared?;
+        let prepared = prepared?;
 
         // 3. wgpu takes the depths back.
         let mut encoder = self::encoder(host, "depth");
-        let tested = (&target.depth, wgpu::TextureUses::DEPTH_STENCIL_WRITE);
-        transition(&mut encoder, [tested]);
+        let depths = eyes.iter().map(|eye| &eye.target.depth);
+        let tested = depths.map(|depth| (depth, wgpu::TextureUses::DEPTH_STENCIL_WRITE));
+        transition(&mut encoder, tested);
         let back = encoder.finish();
 
         // 4. The splats, in a scope of Vulkan's over wgpu's textures. They stay as wgpu knows them.
         let (shown, splats) = host.raw("splats", |cmd| {
-            // SAFETY: as above; the scope's attachments are of the renderer's formats.
-            unsafe {
-                target.begin(host, cmd);
-                let drawn = renderer.draw(cmd, [0.0, 0.0], &frame);
-                host.rara.raw().cmd_end_rendering(cmd);
-                drawn
-            }
+            let of_eyes = renderers.iter_mut().zip(eyes).zip(&prepared);
+            let drawn = of_eyes.map(|((renderer, eye), frame)| {
+                // SAFETY: as above; the scope's attachments are of the renderer's formats.
+                unsafe {
+                    eye.target.begin(host, cmd);
+                    let drawn = renderer.draw(cmd, [0.0, 0.0], frame);
+                    host.rara.raw().cmd_end_rendering(cmd);
+                    drawn
+                }
+            });
+            drawn.collect::<Result<()>>()
         });
         shown?;
 
         // 5. wgpu goes on, here with a copy.
         let mut encoder = self::encoder(host, "read back");
-        target.read_back(&mut encoder);
+        for eye in eyes {
+            eye.target.read_back(&mut encoder);
+        }
         let commands = [drawn, stages, back, splats, encoder.finish()];
         self.in_flight.push(host.queue.submit(commands));
         Ok(())
@@ -125,12 +161,12 @@ impl Splats {
 
     /// How the last frame's splats became pixels.
     pub(crate) fn path(&self) -> &'static str {
-        self.renderer.raster().path
+        self.renderers[0].raster().path
     }
 }
 
 /// Uploads a scene through a buffer that wgpu maps for writing alone, without waiting for anything but the end.
-fn upload(host: &Host, scene: &Gaussians) -> Result<SceneBuffers, Failure> {
+fn upload(host: &Host, scene: &Gaussians) -> std::result::Result<SceneBuffers, Failure> {
     let size = SceneBuffers::staging_bytes(scene, ShFormat::Float);
     let buffer = host.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("splats' staging"),
@@ -180,7 +216,7 @@ fn transition<'a>(
 }
 
 /// The Vulkan format of a target's.
-fn vulkan(format: wgpu::TextureFormat) -> Result<vk::Format, Failure> {
+fn vulkan(format: wgpu::TextureFormat) -> std::result::Result<vk::Format, Failure> {
     match format {
         wgpu::TextureFormat::Rgba8Unorm => Ok(vk::Format::R8G8B8A8_UNORM),
         wgpu::TextureFormat::Rgba16Float => Ok(vk::Format::R16G16B16A16_SFLOAT),

@@ -62,6 +62,14 @@ impl World {
         })
     }
 
+    /// Two eyes about the camera's place.
+    pub(crate) fn eyes(&self) -> [Camera; 2] {
+        let camera = self.view.camera;
+        let aside =
+            camera.rotation.transpose() * DVec3::X * 0.02 * Bounds::of(&self.scene).radius();
+        [-1.0, 1.0].map(|side| camera.eye(camera.eye + side * aside))
+    }
+
     /// A background, the wall, and how both are seen.
     pub(crate) fn furniture(&self) -> (wgpu::Color, &[Wall], DMat4) {
         let [r, g, b, a] = BACKGROUND;

@@ -41,11 +41,11 @@ fn compile(compiler: &str, out: PathBuf, library: &[&str]) -> PathBuf {
     out
 }
 
-/// The picture that the host draws; it must report no problem.
+/// The picture that the host draws of some words; it must report no problem.
 fn draw(host: &Path, device: &str, scene: &Path, what: &str) -> Vec<u8> {
-    let picture = host.with_extension(format!("{what}.ppm"));
+    let picture = host.with_extension(format!("{}.ppm", what.replace(' ', "-")));
     let mut host = Command::new(host);
-    let printed = run_host(host.args([scene, &picture]).arg(what), device);
+    let printed = run_host(host.args([scene, &picture]).args(what.split(' ')), device);
     assert!(
         printed.contains(" visible, ") && printed.contains(" tiles "), // which are the fast way
         "{printed}"
@@ -57,8 +57,8 @@ fn draw(host: &Path, device: &str, scene: &Path, what: &str) -> Vec<u8> {
     pixels.to_vec()
 }
 
-/// The same frame without a mesh, and the name of the device that has drawn it.
-fn truth(scene: &Gaussians) -> (Vec<u8>, String) {
+/// The frames of the host without a mesh, one eye's and that of two eyes, and the name of the device that has drawn them.
+fn truth(scene: &Gaussians) -> ([Vec<u8>; 2], String) {
     let mut headless = Headless::new(
         &HeadlessDesc::default()
             .device(env::var("RARA_TEST_DEVICE").ok())
@@ -68,25 +68,49 @@ fn truth(scene: &Gaussians) -> (Vec<u8>, String) {
     )
     .expect("a Vulkan device and the validation layer (tools/test installs both)");
     let bounds = Bounds::of(scene);
-    let camera = Camera::frame(&bounds, -DVec3::Y, 50.0, SIZE).expect("a view");
+    let camera = |size| Camera::frame(&bounds, -DVec3::Y, 50.0, size).expect("a view");
     let normal = DVec3::new(-0.28, 0.0, 0.96);
     let centre = bounds.centre();
     let clip = Clip::of(
         [Plane::new(normal, -normal.dot(centre)).expect("a normal")],
         ClipOp::And,
     );
-    let settings = Settings::default()
-        .background(Some([0.0; 3]))
-        .raster(Raster::Tiles);
+    let settings = Settings::default().raster(Raster::Tiles);
     headless.load_as(scene, ShFormat::Packed).expect("uploads");
-    headless.render(&camera, &clip, &settings).expect("renders");
-    let picture = headless.picture().expect("reads back");
-    let level = |v: &f32| (255.0 * v.clamp(0.0, 1.0)).round() as u8;
-    let pixels = picture
-        .pixels
-        .iter()
-        .flat_map(|pixel| pixel[..3].iter().map(level));
-    (pixels.collect(), headless.device().info().name.clone())
+    let mut draw = |camera: &Camera| {
+        headless.render(camera, &clip, &settings).expect("renders");
+        headless.picture().expect("reads back").pixels
+    };
+    let level = |v: f32| (255.0 * v.clamp(0.0, 1.0)).round() as u8;
+    let one = draw(&camera(SIZE));
+    let one = one.iter().flat_map(|pixel| pixel[..3].to_vec());
+    let one = one.map(level).collect();
+
+    let half = (SIZE.0 / 2, SIZE.1);
+    let middle = camera(half);
+    let size = (bounds.max - bounds.min).max_element();
+    let aside = middle.rotation.transpose() * DVec3::X * (0.02 * size);
+    let eyes = [-1.0, 1.0].map(|side| {
+        let eye = middle.eye(middle.eye + side * aside);
+        draw(&eye.cx(eye.cx + 0.25).cy(eye.cy - 0.375))
+    });
+    let [left, right] = eyes.each_ref().map(|eye| eye.chunks(half.0 as usize));
+    let rows = left.zip(right).flat_map(|(left, right)| [left, right]);
+    let two = rows.flatten().flat_map(|[r, g, b, alpha]| {
+        let light = |stored| alpha * rara_scene::picture::linear_light(stored / alpha.max(1e-30));
+        [r, g, b].map(|stored| level(light(*stored)))
+    });
+    let two = two.collect();
+    ([one, two], headless.device().info().name.clone())
+}
+
+/// Asserts that pictures differ by rounding alone.
+fn assert_alike(drawn: &[u8], truth: &[u8]) {
+    let differences = drawn.iter().zip(truth).map(|(a, b)| a.abs_diff(*b));
+    assert!(differences.max() <= Some(1), "the headless picture");
+    let same = drawn.iter().zip(truth).filter(|(a, b)| a == b).count();
+    let apart = drawn.len() - same;
+    eprintln!("{apart} of {} bytes are off by one", drawn.len());
 }
 
 #[test]
@@ -102,7 +126,7 @@ fn a_host_in_cpp_draws_splats_and_a_mesh() {
     let scene = rara::scene::load(&path, &mut |_, _| ())
         .expect("loads")
         .gaussians;
-    let (truth, device) = truth(&scene);
+    let ([truth, truth_of_eyes], device) = truth(&scene);
 
     let folder = libraries();
     let shared = folder.join(format!("{DLL_PREFIX}rara_c{DLL_SUFFIX}"));
@@ -117,14 +141,7 @@ fn a_host_in_cpp_draws_splats_and_a_mesh() {
     let archive = compile(&compiler, own.join("static"), &[archive]);
 
     let splats = draw(&shared, &device, &path, "splats");
-    let differences = splats.iter().zip(&truth).map(|(a, b)| a.abs_diff(*b));
-    assert!(differences.max() <= Some(1), "the headless picture");
-    let same = splats.iter().zip(&truth).filter(|(a, b)| a == b).count();
-    eprintln!(
-        "{} of {} bytes are off by one",
-        splats.len() - same,
-        splats.len()
-    );
+    assert_alike(&splats, &truth);
 
     let mesh = draw(&shared, &device, &path, "mesh");
     let both = draw(&shared, &device, &path, "both");
@@ -153,4 +170,19 @@ fn a_host_in_cpp_draws_splats_and_a_mesh() {
         "{outside} pixels beside the mesh, {hidden} hidden by it, {before} with splats before it"
     );
     assert!(hidden > 1000 && before > 200);
+
+    // Where a mesh comes after the splats of two eyes, it is hidden by the depths that they have written.
+    let [splats, mesh, both] =
+        ["splats eyes", "mesh eyes", "both eyes"].map(|what| draw(&shared, &device, &path, what));
+    assert_alike(&splats, &truth_of_eyes);
+    let (mut shown, mut hidden) = (0, 0);
+    let pixels = mesh.chunks(3).zip(splats.chunks(3)).zip(both.chunks(3));
+    for ((mesh, splats), both) in pixels {
+        let covered = mesh != [0; 3];
+        assert!(both == splats || (covered && both == mesh));
+        shown += usize::from(covered && both == mesh && both != splats);
+        hidden += usize::from(covered && both != mesh);
+    }
+    eprintln!("{shown} pixels of two eyes show the mesh, in {hidden} splats hide it");
+    assert!(shown > 1000 && hidden > 200);
 }

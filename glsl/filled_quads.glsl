@@ -4,6 +4,14 @@
 #define RARA_FILLED_QUADS
 #include "frame.glsl"
 
+#ifdef RARA_MULTIVIEW
+// The view of the scope that the picture is drawn into. In the others no quad has an area.
+layout(constant_id = 3) const uint SCOPE_VIEW = 0u;
+#define IS_IN_VIEW (uint(gl_ViewIndex) == SCOPE_VIEW)
+#else
+#define IS_IN_VIEW true
+#endif
+
 BUFFER(readonly, 2, uint, tile_begins)
 
 layout(location = 0) flat out uvec2 filled; // tiles that hold anything, a bit each, row by row
@@ -14,7 +22,7 @@ void main() {
     uint columns = (tiles.x + QUAD_TILES - 1u) / QUAD_TILES;
     uvec2 first = uvec2(quad % columns, quad / columns) * QUAD_TILES;
     filled = uvec2(0u);
-    for (uint row = 0u; row < QUAD_TILES && first.y + row < tiles.y; row++) {
+    for (uint row = 0u; IS_IN_VIEW && row < QUAD_TILES && first.y + row < tiles.y; row++) {
         uint tile = (first.y + row) * tiles.x + first.x;
         uint begin = tile_begins.at[tile];
         uint bits = 0u;

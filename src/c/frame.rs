@@ -150,7 +150,7 @@ pub unsafe extern "C" fn rara_renderer_prepare(
 /// last, and where `x` or `y` is not finite.
 ///
 /// # Safety
-/// `cmd` is inside a rendering scope with the attachments of RaraRendererDesc and no others, one layer and no view mask;
+/// `cmd` is inside a rendering scope with the attachments of RaraRendererDesc and no others, one layer and its `view_mask`;
 /// a scissor is set by vkCmdSetScissor; the commands of rara_renderer_prepare come before it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_renderer_draw(

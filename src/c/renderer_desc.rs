@@ -101,6 +101,11 @@ pub struct RaraRendererDesc {
     /// then orders the two by semaphores, as RaraRenderer says. Default: VK_QUEUE_FAMILY_IGNORED, where both are submitted to
     /// the device's queue.
     pub compute_family: u32,
+    /// The view mask of the scopes that are drawn into, `VkRenderingInfo::viewMask` or that of the subpasses, where the device has
+    /// the feature `multiview` enabled. Only tiles draw so. Default: 0, for scopes without one.
+    pub view_mask: u32,
+    /// The view of that mask that is drawn into, as an eye's into its layer of the images; the others are left alone.
+    pub view: u32,
 }
 
 versioned!(RaraRendererDesc);
@@ -120,11 +125,12 @@ impl RaraRendererDesc {
 
 /// # Safety
 /// As for [`Target::render_pass`], unless it is null.
-unsafe fn target(render_pass: vk::RenderPass, subpass: u32) -> Target {
-    if render_pass == vk::RenderPass::null() {
-        return Target::DYNAMIC;
-    }
-    Target::render_pass(render_pass, subpass)
+unsafe fn target(desc: &RaraRendererDesc, render_pass: vk::RenderPass, subpass: u32) -> Target {
+    let target = match render_pass == vk::RenderPass::null() {
+        true => Target::DYNAMIC,
+        false => Target::render_pass(render_pass, subpass),
+    };
+    target.in_view(desc.view_mask, desc.view)
 }
 
 /// # Safety
@@ -146,12 +152,12 @@ pub(crate) unsafe fn renderer_desc(desc: *const RaraRendererDesc) -> Result<Rend
     let expects_depth = desc.expected_depth_format != vk::Format::UNDEFINED;
     let expected_depth = expects_depth.then(|| {
         let (pass, subpass) = (desc.expected_depth_render_pass, desc.expected_depth_subpass);
-        let target = target(pass, subpass);
+        let target = target(&desc, pass, subpass);
         ExpectedDepthDesc::new(desc.expected_depth_format).target(target)
     });
     let draws_motion = desc.motion_format != vk::Format::UNDEFINED;
     let motion = draws_motion.then(|| {
-        let target = target(desc.motion_render_pass, desc.motion_subpass);
+        let target = target(&desc, desc.motion_render_pass, desc.motion_subpass);
         let motion = MotionDesc::new(desc.motion_format).target(target);
         motion.least_alpha(desc.motion_least_alpha)
     });
@@ -166,7 +172,7 @@ pub(crate) unsafe fn renderer_desc(desc: *const RaraRendererDesc) -> Result<Rend
         RARA_COLOR_SPACE_LINEAR => ColorSpace::Linear,
         other => return invalid(format!("desc->color_space {other} is no RaraColorSpace")),
     };
-    let target = target(desc.render_pass, desc.subpass);
+    let target = target(&desc, desc.render_pass, desc.subpass);
     let is_elsewhere = desc.compute_family != vk::QUEUE_FAMILY_IGNORED;
     let compute_family = is_elsewhere.then_some(desc.compute_family);
     Ok(RendererDesc::new(desc.color_format)

@@ -196,8 +196,9 @@ impl GraphicsPipeline {
         let dynamic_states = [vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR];
         let dynamic = vk::PipelineDynamicStateCreateInfo::default().dynamic_states(&dynamic_states);
         let formats = [into.color];
-        let mut rendering =
-            vk::PipelineRenderingCreateInfo::default().color_attachment_formats(&formats);
+        let mut rendering = vk::PipelineRenderingCreateInfo::default()
+            .view_mask(into.target.view_mask)
+            .color_attachment_formats(&formats);
         if let Some(depth) = into.depth {
             rendering = rendering.depth_attachment_format(depth.format);
             if depth.stencil {
@@ -215,7 +216,7 @@ impl GraphicsPipeline {
         if into.depth.is_some() {
             info = info.depth_stencil_state(&depth);
         }
-        info = match into.target.0 {
+        info = match into.target.pass {
             None => info.push_next(&mut rendering),
             Some((render_pass, subpass)) => info.render_pass(render_pass).subpass(subpass),
         };

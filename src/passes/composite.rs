@@ -33,7 +33,9 @@ pub(crate) fn draw(plan: &EyePlan, targets: Targets, part: Part) -> Draw<composi
         Part::ExpectedDepth(attachments) => (&composite::FRAG, attachments, DepthUse::Ignored),
         Part::WrittenDepth => (&composite::DEPTH_FRAG, targets.colour, DepthUse::Written),
     };
+    let view = attachments.target.view();
     let constants = composite::Constants {
+        scope_view: view.unwrap_or(0),
         linear: converts && targets.linear,
         stored: converts && !targets.linear,
         depths: matches!(part, Part::ExpectedDepth(_)),
@@ -42,7 +44,11 @@ pub(crate) fn draw(plan: &EyePlan, targets: Targets, part: Part) -> Draw<composi
         written_depth: false,
         strongest: false,
     };
-    Draw::new([&composite::VERT, fragment], constants, attachments, depth)
+    let front = match view {
+        Some(_) => &composite::MULTIVIEW_VERT,
+        None => &composite::VERT,
+    };
+    Draw::new([front, fragment], constants, attachments, depth)
 }
 
 /// Blends a part of the tiles' picture onto what the host has drawn, inside the host's rendering scope. `origin` is where its

@@ -50,14 +50,24 @@ impl Sight {
 
 /// The draw of the motion of the tiles' picture.
 pub(crate) fn draw(plan: &EyePlan, attachments: Attachments) -> Draw<motion::Program> {
+    let view = attachments.target.view();
     let constants = motion::Constants {
+        scope_view: view.unwrap_or(0),
         expected_depth: plan.way.expects_depth,
         written_depth: plan.way.writes_depth,
         strongest: false, // nothing lies behind them
         layered: plan.cut.layers.layers().len() > 1,
     };
-    let shaders = [&motion::VERT, &motion::FRAG];
-    Draw::new(shaders, constants, attachments, DepthUse::Ignored)
+    let front = match view {
+        Some(_) => &motion::MULTIVIEW_VERT,
+        None => &motion::VERT,
+    };
+    Draw::new(
+        [front, &motion::FRAG],
+        constants,
+        attachments,
+        DepthUse::Ignored,
+    )
 }
 
 /// Draws inside the host's rendering scope. `origin` is where its viewport begins, px; pixels whose alpha is below `least_alpha`

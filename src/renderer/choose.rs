@@ -13,7 +13,8 @@ pub(super) struct Targets {
     /// True when splats are tested against a depth that tiles cannot read.
     pub(super) hidden: bool,
     pub(super) multisampled: bool,
-    /// True when the host gets more than colours and expected depths: depths for its depth buffer, parts of splats, or motion.
+    /// True when only tiles draw what the host gets beside colours and expected depths, or where it gets them: depths for its
+    /// depth buffer, parts of splats, motion, one of several views.
     pub(super) beside: bool,
     /// True when colours become linear light, or are stored, once splats are blended.
     pub(super) converted: bool,
@@ -50,8 +51,8 @@ pub(super) fn raster(
         }
         _ if targets.beside && !can_tile => {
             return Err(Error::Invalid(
-                "only tiles can write depths (DepthDesc::write_alpha), hide parts of splats (DepthDesc::soft) and find motion \
-                 (RendererDesc::motion); use Raster::Auto or Raster::Tiles"
+                "only tiles can write depths (DepthDesc::write_alpha), hide parts of splats (DepthDesc::soft), find motion \
+                 (RendererDesc::motion) and draw into one of several views (Target::in_view); use Raster::Auto or Raster::Tiles"
                     .into(),
             ));
         }

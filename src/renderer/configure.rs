@@ -250,11 +250,12 @@ impl Renderer {
         choose::raster(settings, device.support(), device.shape(), targets)
     }
 
-    /// True when the host gets more than colours and expected depths: depths for its depth buffer, parts of splats, or motion.
+    /// True when only tiles draw what the host gets beside colours and expected depths, or where it gets them.
     fn draws_beside(&self) -> bool {
         let depth = self.desc.depth;
         let finds_depth = |depth: DepthDesc| depth.write_alpha.is_some() || depth.soft;
-        self.desc.motion.is_some() || depth.is_some_and(finds_depth)
+        let is_view = self.desc.target.view().is_some();
+        self.desc.motion.is_some() || depth.is_some_and(finds_depth) || is_view
     }
 
     /// The map from a depth in the scene's units to the host's depth buffer.

@@ -252,6 +252,14 @@ impl RendererDesc {
                  the host's depth before its scope, so that only scenes of linear light will be drawn"
             );
         }
+        let targets = [
+            Some(self.target),
+            self.expected_depth.map(|expected| expected.target),
+            self.motion.map(|motion| motion.target),
+        ];
+        for target in targets.into_iter().flatten() {
+            self.check_view(target)?;
+        }
         if let Some(expected) = self.expected_depth {
             let what = "ExpectedDepthDesc::format";
             self.check_floats(device, expected.format, what)?;
@@ -278,6 +286,24 @@ impl RendererDesc {
         }
         self.depth
             .map_or(Ok(()), |depth| self.check_depth(device, depth))
+    }
+
+    /// Checks that the view that is drawn into is one of its scope's, and that tiles draw into it.
+    fn check_view(&self, target: Target) -> Result<()> {
+        if !target.has_its_view() {
+            return Err(Error::Invalid(
+                "a target of RendererDesc is in a view that its view mask lacks (Target::in_view)"
+                    .into(),
+            ));
+        }
+        match target.view() {
+            Some(_) if self.hides_from_tiles() => Err(Error::Invalid(
+                "a target of RendererDesc has a view mask (Target::in_view) and DepthDesc::readable is not set: tiles draw into one \
+                 view of several, and need the host's depth before its scope"
+                    .into(),
+            )),
+            _ => Ok(()),
+        }
     }
 
     /// The draws that the barriers of compute commands are between.

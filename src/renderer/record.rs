@@ -146,8 +146,8 @@ impl Renderer {
     ///
     /// # Safety
     /// `cmd` is inside a rendering scope with the attachments of the [`RendererDesc`](crate::RendererDesc) and no others,
-    /// one layer and no view mask; a scissor is set by `vkCmdSetScissor`; the commands of [`prepare`](Self::prepare) come
-    /// before it.
+    /// one layer and no view mask but that of [`Target::in_view`](crate::gpu::Target::in_view); a scissor is set by
+    /// `vkCmdSetScissor`; the commands of [`prepare`](Self::prepare) come before it.
     ///
     /// # Errors
     /// [`Error::Invalid`](crate::Error::Invalid) for another frame than the one that this renderer has prepared last, and for

@@ -25,9 +25,12 @@ const TO_DIRECT3D: [&str; 3] = ["--hlsl", "--shader-model", "60"];
 /// `.subgroup`, which does the same and can.
 ///
 /// `radix_scatter` counts the keys of each subgroup by its number within the workgroup. That language has no such number, and
-/// promises no order of invocations from which to compute it.
-const NOT_IN_DIRECT3D: [(&str, &str); 1] =
-    [("radix_scatter.subgroup.comp", "Unsupported builtin in HLSL")];
+/// promises no order of invocations from which to compute it. Of the views of a scope it knows since shader model 6.1.
+const NOT_IN_DIRECT3D: [(&str, &str); 3] = [
+    ("radix_scatter.subgroup.comp", "Unsupported builtin in HLSL"),
+    ("composite.multiview.vert", "View Index input"),
+    ("motion.multiview.vert", "View Index input"),
+];
 
 /// The modules by address that cannot be had in Metal's language, and how spirv-cross refuses them; bound, all can.
 ///
@@ -177,7 +180,7 @@ fn bound_shaders_translate_to_direct3ds_language() {
         let text = match (module.translated(&TO_DIRECT3D), exception) {
             (Ok(text), None) => text,
             (Err(said), Some((_, why))) if said.contains(why) => {
-                refused.push(shader.replace(".subgroup", ""));
+                refused.push(shader.replace(".subgroup", "").replace(".multiview", ""));
                 continue;
             }
             (Ok(_), Some(_)) => panic!("{shader} does translate: strike it from NOT_IN_DIRECT3D"),

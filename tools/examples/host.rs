@@ -24,7 +24,7 @@ pub(crate) struct HostDesc<'a> {
     pub(crate) device: Option<&'a str>,
     /// Load the Khronos validation layer with checks of synchronisation and best practices.
     pub(crate) validation: bool,
-    /// Enable what is optional: mesh shaders, push descriptors, pipeline statistics.
+    /// Enable what is optional: mesh shaders, push descriptors, pipeline statistics, several views a scope.
     pub(crate) optional: bool,
     /// Size of the targets.
     pub(crate) extent: vk::Extent2D,
@@ -72,13 +72,16 @@ impl Host {
                 .pipeline_statistics_query(support.pipeline_statistics);
             let extensions: Vec<_> = support.extensions().iter().map(|e| e.as_ptr()).collect();
             let mut features = support.features();
+            // For hosts that draw the eyes of one image together.
+            let mut views = vk::PhysicalDeviceMultiviewFeatures::default().multiview(desc.optional);
             let queues = [vk::DeviceQueueCreateInfo::default()
                 .queue_family_index(support.queue_family)
                 .queue_priorities(&[1.0])];
             let info = vk::DeviceCreateInfo::default()
                 .queue_create_infos(&queues)
                 .enabled_extension_names(&extensions)
-                .enabled_features(&counts);
+                .enabled_features(&counts)
+                .push_next(&mut views);
             let device = instance
                 .create_device(physical_device, &features.chain(info), None)
                 .map_err(rara_gpu::failed("vkCreateDevice"))?;

@@ -34,7 +34,7 @@ impl Canvas {
             .format(format)
             .extent(self.desc.extent.into())
             .mip_levels(1)
-            .array_layers(1)
+            .array_layers(self.desc.layers)
             .samples(samples)
             .usage(usage);
         // SAFETY: the device is alive, and everything pointed to outlives the calls.
@@ -57,7 +57,10 @@ impl Canvas {
             bound.expect("binds");
             let info = vk::ImageViewCreateInfo::default()
                 .image(raw)
-                .view_type(vk::ImageViewType::TYPE_2D)
+                .view_type(match self.desc.layers {
+                    1 => vk::ImageViewType::TYPE_2D,
+                    _ => vk::ImageViewType::TYPE_2D_ARRAY,
+                })
                 .format(format)
                 .subresource_range(whole(format));
             let view = self.raw.create_image_view(&info, None).expect("a view");
@@ -123,5 +126,5 @@ fn whole(format: vk::Format) -> vk::ImageSubresourceRange {
     vk::ImageSubresourceRange::default()
         .aspect_mask(aspect)
         .level_count(1)
-        .layer_count(1)
+        .layer_count(vk::REMAINING_ARRAY_LAYERS)
 }

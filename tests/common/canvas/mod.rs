@@ -54,6 +54,8 @@ pub fn with_host(optional: bool, test: impl FnOnce(&Host, &Device)) {
 
 pub struct CanvasDesc {
     pub extent: vk::Extent2D,
+    /// Layers of the images; of several, each is a view of the scopes (multiview).
+    pub layers: u32,
     pub color: vk::Format,
     /// `UNDEFINED` for none.
     pub second: vk::Format,
@@ -73,6 +75,7 @@ impl CanvasDesc {
     pub fn new((width, height): (u32, u32), color: vk::Format) -> Self {
         Self {
             extent: vk::Extent2D { width, height },
+            layers: 1,
             color,
             second: vk::Format::UNDEFINED,
             depth: vk::Format::UNDEFINED,
@@ -251,8 +254,17 @@ impl Canvas {
         [first, self.second.as_ref()]
     }
 
+    /// Those of all layers, one after the other.
     fn pixels(&self) -> usize {
-        (self.desc.extent.width * self.desc.extent.height) as usize
+        (self.desc.extent.width * self.desc.extent.height * self.desc.layers) as usize
+    }
+
+    /// The view mask of its scopes.
+    fn view_mask(&self) -> u32 {
+        match self.desc.layers {
+            1 => 0,
+            layers => (1 << layers) - 1,
+        }
     }
 
     /// Room for what they hold.
@@ -338,7 +350,7 @@ impl Canvas {
     ) {
         let layers = vk::ImageSubresourceLayers::default()
             .aspect_mask(aspect)
-            .layer_count(1);
+            .layer_count(self.desc.layers);
         let region = vk::BufferImageCopy::default()
             .image_subresource(layers)
             .image_extent(self.desc.extent.into());

@@ -20,7 +20,7 @@ impl Canvas {
             .clear_value(value(self.desc.far));
         let info = vk::RenderingInfo::default()
             .render_area(self.desc.extent.into())
-            .layer_count(1)
+            .layer_count(self.desc.layers)
             .depth_attachment(&attachment);
         // SAFETY: the caller vouches for `cmd`.
         unsafe {
@@ -34,7 +34,7 @@ impl Canvas {
                 let area = vk::ClearRect {
                     rect: *rect,
                     base_array_layer: 0,
-                    layer_count: 1,
+                    layer_count: self.desc.layers,
                 };
                 self.raw.cmd_clear_attachments(cmd, &[clear], &[area]);
             }
@@ -85,7 +85,8 @@ impl Canvas {
         colors.extend(self.second.as_ref().map(|image| attach(image, second)));
         let mut info = vk::RenderingInfo::default()
             .render_area(self.desc.extent.into())
-            .layer_count(1)
+            .layer_count(1) // no matter where there is a mask
+            .view_mask(self.view_mask())
             .color_attachments(&colors);
         let depth = self.depth.as_ref().map(|depth| {
             vk::RenderingAttachmentInfo::default()
@@ -134,9 +135,14 @@ impl Canvas {
             subpass = subpass.depth_stencil_attachment(&depth);
         }
         let subpasses = [subpass];
-        let info = vk::RenderPassCreateInfo::default()
+        let masks = [self.view_mask()];
+        let mut views_of_pass = vk::RenderPassMultiviewCreateInfo::default().view_masks(&masks);
+        let mut info = vk::RenderPassCreateInfo::default()
             .attachments(&descriptions)
             .subpasses(&subpasses);
+        if masks[0] != 0 {
+            info = info.push_next(&mut views_of_pass);
+        }
         // SAFETY: the device is alive, and everything pointed to outlives the calls.
         unsafe {
             self.render_pass = self.raw.create_render_pass(&info, None).expect("a pass");

@@ -1,8 +1,8 @@
 //! Two eyes: in one scope, and one after the other.
 
 use super::*;
-use rara::gpu::Device;
-use rara::{ConfiguredFrame, PreparedFrame};
+use rara::gpu::{DepthImage, Device, Target};
+use rara::{ConfiguredFrame, DepthDesc, DepthMap, PreparedFrame};
 
 /// Two eyes before a scene.
 fn eyes(scene: &Gaussians) -> [Camera; 2] {
@@ -160,6 +160,94 @@ fn one_renderer_draws_views_one_after_the_other_in_one_command_buffer() {
                 (&mut |cmd| prepare(cmd, 1), &mut |cmd| draw(cmd, LEFTS[1])),
             ]);
             eyes.assert_shown(way, &pixels);
+        }
+    });
+}
+
+/// The layers of a host's images are its eyes, and one scope draws both, in dynamic rendering and in a classic render pass.
+#[test]
+fn each_eye_draws_into_its_view_of_one_scope() {
+    let gaussians = generate(Kind::General, 3_000, 5);
+    let cameras = eyes(&gaussians);
+    let clip = common::clip(&gaussians, 1, ClipOp::And);
+    let map = DepthMap::ordinary(0.1, 100.0).expect("a map");
+    with_host(true, |host, device| {
+        let scene = SceneBuffers::upload(device, &gaussians, ShFormat::Float).expect("uploads");
+        let canvas = |layers, render_pass| {
+            let desc = CanvasDesc {
+                layers,
+                render_pass,
+                clear: [0.1, 0.2, 0.3, 1.0],
+                depth: vk::Format::D32_SFLOAT,
+                ..CanvasDesc::new(SIZE, FLOATS)
+            };
+            Canvas::new(&host.lend(), device, desc)
+        };
+        let depth = DepthDesc::new(vk::Format::D32_SFLOAT, map)
+            .readable(true)
+            .write_alpha(Some(0.5));
+        let draw = |canvas: &Canvas, eyes: &[(Target, Camera)]| {
+            let eyes = eyes.iter().map(|(target, camera)| {
+                let desc = desc().target(*target).depth(Some(depth));
+                let mut renderer = Renderer::new(device, desc).expect("a renderer");
+                let frame = renderer.configure(&scene, camera, &clip, &Settings::default());
+                (renderer, Some(frame.expect("configures")), None)
+            });
+            let eyes = RefCell::new(eyes.collect::<Vec<_>>());
+            let before = |cmd| {
+                for (layer, eye) in (0..).zip(eyes.borrow_mut().iter_mut()) {
+                    let (renderer, frame, prepared) = eye;
+                    let behind = DepthImage {
+                        layer,
+                        ..canvas.depth_image(0, 0)
+                    };
+                    let frame = frame.take().expect("once");
+                    // SAFETY: recording outside a scope, the depth is ready to be copied, and all is waited for.
+                    let made = unsafe { renderer.prepare(cmd, &scene, Some(&behind), frame) };
+                    *prepared = Some(made.expect("prepares"));
+                }
+            };
+            let inside = |cmd| {
+                canvas.viewport(cmd, 0, 0, SIZE);
+                for (renderer, _, prepared) in eyes.borrow_mut().iter_mut() {
+                    let prepared = prepared.as_ref().expect("it was prepared");
+                    // SAFETY: inside the scope that the renderer was made for.
+                    unsafe { renderer.draw(cmd, [0.0; 2], prepared) }.expect("draws");
+                }
+            };
+            let [pixels, _] = canvas.draw(before, inside);
+            (pixels, canvas.depths())
+        };
+        let alone = canvas(1, false);
+        let [left, right] = cameras.map(|camera| draw(&alone, &[(Target::DYNAMIC, camera)]));
+        assert!(left != right);
+        let expected = ([left.0, right.0].concat(), [left.1, right.1].concat());
+        for render_pass in [false, true] {
+            let layered = canvas(2, render_pass);
+            let target = match render_pass {
+                false => Target::DYNAMIC,
+                // SAFETY: the pass is the canvas's, which outlives the renderers.
+                true => unsafe { Target::render_pass(layered.render_pass(), 0) },
+            };
+            let eyes = [0, 1].map(|eye| (target.in_view(0b11, eye), cameras[eye as usize]));
+            let drawn = draw(&layered, &eyes);
+            assert!(drawn == expected, "render pass: {render_pass}");
+        }
+        // What quads would draw goes into every view.
+        let renderer = Renderer::new(device, desc().target(Target::DYNAMIC.in_view(0b11, 0)));
+        let mut renderer = renderer.expect("a renderer");
+        let refused = renderer.configure(&scene, &cameras[0], &clip, &raster(Raster::Quad));
+        let refused = refused.expect_err("of quads").to_string();
+        assert!(refused.contains("Target::in_view"), "{refused}");
+        let hidden = DepthDesc::new(vk::Format::D32_SFLOAT, map);
+        for (view, depth, part) in [(2, None, "view mask lacks"), (1, Some(hidden), "readable")] {
+            let desc = desc()
+                .target(Target::DYNAMIC.in_view(0b11, view))
+                .depth(depth);
+            let refused = Renderer::new(device, desc)
+                .expect_err("no such view")
+                .to_string();
+            assert!(refused.contains(part), "{refused}");
         }
     });
 }

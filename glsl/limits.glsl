@@ -96,6 +96,8 @@ const uint MACRO_RANGE_GROUP_SIZE = 64u;
 const uint BATCH_SPLATS = 512u;
 // Consecutive splats of a workgroup that writes coarse lists, 32 for each word of their bits.
 const uint COARSE_GROUP_SIZE = RADIX_GROUP_SIZE;
+// Words of a host's depth that a workgroup reads.
+const uint HOST_DEPTH_GROUP_SIZE = 64u;
 // The most rows and columns of cells of coarse lists together: a workgroup holds the bits of its splats in 8 KiB.
 const uint MOST_CELLS = 256u;
 // Workgroup size of the spans of tiles, of which one invocation owns a run of consecutive splats.

@@ -95,6 +95,8 @@ pub const MACRO_RANGE_GROUP_SIZE: u32 = 64;
 pub const BATCH_SPLATS: u32 = 512;
 /// Consecutive splats of a workgroup that writes coarse lists, 32 for each word of their bits.
 pub const COARSE_GROUP_SIZE: u32 = RADIX_GROUP_SIZE;
+/// Words of a host's depth that a workgroup reads.
+pub const HOST_DEPTH_GROUP_SIZE: u32 = 64;
 /// The most rows and columns of cells of coarse lists together: a workgroup holds the bits of its splats in 8 KiB.
 pub const MOST_CELLS: u32 = 256;
 /// Workgroup size of the spans of tiles, of which one invocation owns a run of consecutive splats.

@@ -93,6 +93,9 @@ pub struct RaraDepthDesc {
     /// True to hide of each splat what lies behind the host's depth, on each pixel's line of sight, not whole splats by the depth
     /// of their centres. It needs readable and tiles. Default: false.
     pub soft: vk::Bool32,
+    /// True when rara_renderer_prepare is given a view of the depth to sample (`view` of RaraDepthImage) in place of an image to
+    /// copy, for hosts whose depth is no source of transfers. It needs readable and VK_KHR_push_descriptor. Default: false.
+    pub sampled: vk::Bool32,
 }
 
 versioned!(RaraDepthDesc);
@@ -116,7 +119,8 @@ pub(crate) unsafe fn depth_desc(desc: *const RaraDepthDesc) -> Result<DepthDesc>
         .stencil(desc.stencil != 0)
         .readable(desc.readable != 0)
         .write_alpha((desc.write_alpha != 0.0).then_some(desc.write_alpha))
-        .soft(desc.soft != 0))
+        .soft(desc.soft != 0)
+        .sampled(desc.sampled != 0))
 }
 
 /// A depth attachment without stencil, not readable. `desc_size` is sizeof *desc.
@@ -131,15 +135,16 @@ pub unsafe extern "C" fn rara_depth_desc_default(
     guard(|| write(desc, desc_size, &default, "desc"))
 }
 
-/// A host's depth image, of one sample and created with VK_IMAGE_USAGE_TRANSFER_SRC_BIT.
+/// A host's depth image, of one sample. It is created with VK_IMAGE_USAGE_TRANSFER_SRC_BIT to be copied, or with
+/// VK_IMAGE_USAGE_SAMPLED_BIT where a view of it is given.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct RaraDepthImage {
     /// Set by rara_depth_image_default.
     pub struct_size: usize,
-    /// The image, whose level 0 is read.
+    /// The image, whose level 0 is copied; null where a view is given.
     pub image: vk::Image,
-    /// Its layout when the copy runs: TRANSFER_SRC_OPTIMAL, the default, or GENERAL.
+    /// Its layout when it is read: TRANSFER_SRC_OPTIMAL, the default, or GENERAL; with a view one in which it can be sampled.
     pub layout: vk::ImageLayout,
     /// Its width, pixels.
     pub width: u32,
@@ -151,6 +156,9 @@ pub struct RaraDepthImage {
     pub x: i32,
     /// The viewport's top edge in the image, pixels. Default: 0.
     pub y: i32,
+    /// A view of the depths alone, 2D, of one level and one layer, that is sampled where `sampled` of RaraDepthDesc promises it.
+    /// Default: null.
+    pub view: vk::ImageView,
 }
 
 versioned!(RaraDepthImage);
@@ -183,14 +191,15 @@ pub unsafe extern "C" fn rara_depth_image_default(
 pub(crate) unsafe fn depth_image(image: *const RaraDepthImage) -> Result<DepthImage> {
     let default = RaraDepthImage::new(vk::Image::null(), 0, 0);
     let image = read(image, default, "depth")?;
-    if image.image == vk::Image::null() {
+    let copies = image.view == vk::ImageView::null();
+    if copies && image.image == vk::Image::null() {
         return invalid("depth->image is null");
     }
     let readable = [
         vk::ImageLayout::TRANSFER_SRC_OPTIMAL,
         vk::ImageLayout::GENERAL,
     ];
-    if !readable.contains(&image.layout) {
+    if copies && !readable.contains(&image.layout) {
         return invalid(format!(
             "depth->layout is {:?}: it must be TRANSFER_SRC_OPTIMAL or GENERAL",
             image.layout
@@ -198,6 +207,7 @@ pub(crate) unsafe fn depth_image(image: *const RaraDepthImage) -> Result<DepthIm
     }
     Ok(DepthImage {
         image: image.image,
+        view: image.view,
         layout: image.layout,
         extent: vk::Extent2D {
             width: image.width,

@@ -63,7 +63,7 @@ fn module(shaders: &[Source]) -> String {
             out,
             "/// `glsl/{}`.\npub(crate) static {}: super::Shader = super::Shader {{ name: {name:?}, file: {:?}, \
              stage: ash::vk::ShaderStageFlags::{}, buffers: &[{}], address: &{:?}, bound: &{:?}, mixed: &{:?}, \
-             subgroups: {} }};",
+             subgroups: {}, image: {} }};",
             shader.file,
             shader.names().1,
             shader.file,
@@ -73,6 +73,7 @@ fn module(shaders: &[Source]) -> String {
             shader.modules[1],
             shader.modules[2],
             shader.declarations.subgroups,
+            shader.declarations.image,
         )
         .unwrap();
     }
@@ -246,6 +247,7 @@ mod tests {
                 params: Vec::new(),
                 constants: constants.iter().map(constant).collect(),
                 subgroups: false,
+                image: false,
                 workgroup: [0; 3],
             },
             common: Vec::new(),

@@ -12,6 +12,8 @@ pub(crate) struct Declarations {
     pub(crate) constants: Vec<Constant>,
     /// True when it has subgroup operations.
     pub(crate) subgroups: bool,
+    /// True when it reads an image.
+    pub(crate) image: bool,
     /// The sides of its workgroups where no constant decides them; 0 of other shaders.
     pub(crate) workgroup: [u32; 3],
 }
@@ -112,6 +114,7 @@ pub(crate) fn instructions(words: &[u32]) -> impl Iterator<Item = (u32, &[u32])>
 pub(crate) fn declarations(words: &[u32]) -> Declarations {
     const STORAGE_BUFFER: u32 = 12;
     const PUSH_CONSTANT: u32 = 9;
+    const UNIFORM_CONSTANT: u32 = 0;
     let all = instructions(words);
     let mut known = vec![TypeTable::default(); words[3] as usize];
     let (mut variables, mut specs, mut composites) = (Vec::new(), Vec::new(), Vec::new());
@@ -170,6 +173,7 @@ pub(crate) fn declarations(words: &[u32]) -> Declarations {
                 .buffers
                 .push(buffer(&known[variable], &known[pointee(pointer)])),
             PUSH_CONSTANT => found.params = params(&known, pointee(pointer)),
+            UNIFORM_CONSTANT => found.image = true,
             _ => {}
         }
     }

@@ -117,7 +117,7 @@ impl Dispatcher {
             // SAFETY: `cmd` is recording on the pipeline's device; pipeline and buffer outlive the wait.
             unsafe {
                 raw.cmd_bind_pipeline(cmd, point, inner.raw);
-                inner.layout.push(cmd, point, &buffers, &[]);
+                inner.layout.push(cmd, point, &buffers, &[], None);
                 raw.cmd_dispatch(cmd, 0, 0, 0);
             }
             Ok(())

@@ -129,9 +129,13 @@ impl<'a> Drawer<'a> {
                 vk::PipelineBindPoint::GRAPHICS,
                 inner.raw,
             );
-            inner
-                .layout
-                .push(self.cmd, vk::PipelineBindPoint::GRAPHICS, buffers, params);
+            inner.layout.push(
+                self.cmd,
+                vk::PipelineBindPoint::GRAPHICS,
+                buffers,
+                params,
+                None,
+            );
         }
     }
 }

@@ -67,6 +67,8 @@ pub struct Layout {
     bindings: Bindings,
     /// The buffers of all stages, by ascending binding.
     pub uses: Vec<BufferUse>,
+    /// True when an image is bound behind them.
+    image: bool,
 }
 
 impl Layout {
@@ -113,8 +115,9 @@ impl Layout {
             stages,
             bindings,
             uses,
+            image: shaders.iter().any(|shader| shader.image),
         };
-        let binds = this.bound().next().is_some();
+        let binds = this.image || this.bound().next().is_some();
         if binds {
             this.set = this.create_set()?;
             device.set_name(this.set, name);
@@ -141,14 +144,17 @@ impl Layout {
                     .into(),
             ));
         }
-        let slot = |buffer: &BufferUse| {
+        let slot = |binding, kind| {
             vk::DescriptorSetLayoutBinding::default()
-                .binding(buffer.binding)
-                .descriptor_type(vk::DescriptorType::STORAGE_BUFFER)
+                .binding(binding)
+                .descriptor_type(kind)
                 .descriptor_count(1)
                 .stage_flags(self.stages)
         };
-        let slots: Vec<_> = self.bound().map(slot).collect();
+        let buffers = self.bound().map(|buffer| buffer.binding);
+        let buffers = buffers.map(|binding| slot(binding, vk::DescriptorType::STORAGE_BUFFER));
+        let image = slot(MAX_BUFFERS as u32, vk::DescriptorType::SAMPLED_IMAGE);
+        let slots: Vec<_> = buffers.chain(self.image.then_some(image)).collect();
         let info = vk::DescriptorSetLayoutCreateInfo::default()
             .flags(vk::DescriptorSetLayoutCreateFlags::PUSH_DESCRIPTOR_KHR)
             .bindings(&slots);
@@ -194,7 +200,7 @@ impl Layout {
         );
     }
 
-    /// Records push constants and, where bound, the buffers.
+    /// Records push constants and, where bound, the buffers and the image.
     ///
     /// # Safety
     ///
@@ -206,6 +212,7 @@ impl Layout {
         point: vk::PipelineBindPoint,
         buffers: &[&Buffer],
         params: &[u32],
+        image: Option<vk::DescriptorImageInfo>,
     ) {
         let mut block: PushConstants = bytemuck::Zeroable::zeroed();
         for (address, buffer) in block.address.iter_mut().zip(buffers) {
@@ -216,8 +223,8 @@ impl Layout {
         let bytes = &bytemuck::bytes_of(&block)[PushConstants::bytes(self.bindings)];
         // SAFETY: the caller vouches for `cmd`; the layout has one range of this size for these stages.
         unsafe { raw.cmd_push_constants(cmd, self.raw, self.stages, 0, bytes) };
-        let count = self.bound().count();
-        if count == 0 {
+        let mut count = self.bound().count();
+        if count == 0 && image.is_none() {
             return;
         }
         let limit = self.device.support().max_storage_buffer_range;
@@ -234,12 +241,20 @@ impl Layout {
                 .buffer(bound.handle())
                 .range(vk::WHOLE_SIZE)];
         }
-        let mut writes = [vk::WriteDescriptorSet::default(); MAX_BUFFERS];
+        let mut writes = [vk::WriteDescriptorSet::default(); MAX_BUFFERS + 1];
         for ((write, info), buffer) in writes.iter_mut().zip(&infos).zip(self.bound()) {
             *write = vk::WriteDescriptorSet::default()
                 .dst_binding(buffer.binding)
                 .descriptor_type(vk::DescriptorType::STORAGE_BUFFER)
                 .buffer_info(info);
+        }
+        let image = image.map(|image| [image]);
+        if let Some(image) = &image {
+            writes[count] = vk::WriteDescriptorSet::default()
+                .dst_binding(MAX_BUFFERS as u32)
+                .descriptor_type(vk::DescriptorType::SAMPLED_IMAGE)
+                .image_info(image);
+            count += 1;
         }
         let push = self
             .device

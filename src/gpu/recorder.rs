@@ -23,19 +23,43 @@ pub enum Groups<'a> {
     Indirect(&'a Buffer, u64),
 }
 
-/// A host's depth image, of one sample and created with `TRANSFER_SRC`.
+/// A host's depth image, of one sample. It is created with `TRANSFER_SRC` to be copied, or with `SAMPLED` where a view of it is
+/// given.
 #[derive(Debug, Clone, Copy)]
 pub struct DepthImage {
-    /// The image, whose level 0 is read.
+    /// The image, whose level 0 is copied.
     pub image: vk::Image,
-    /// The layout of the image when it is copied: `TRANSFER_SRC_OPTIMAL` or `GENERAL`.
+    /// A view of the depths alone, 2D, of one level and one layer, that is sampled in place of a copy, where that was promised;
+    /// else null. `image` and `layer` are then unused.
+    pub view: vk::ImageView,
+    /// The layout of the image when it is read: `TRANSFER_SRC_OPTIMAL` or `GENERAL`, or with a view one in which it can be sampled.
     pub layout: vk::ImageLayout,
     /// The size of the image, in px.
     pub extent: vk::Extent2D,
-    /// The layer to read.
+    /// The layer to copy.
     pub layer: u32,
     /// The position of the viewport's upper left corner in the image, in px.
     pub origin: vk::Offset2D,
+}
+
+impl DepthImage {
+    /// The part of the image that lies under a viewport of some size: the pixel of the image at which it begins, and its place in
+    /// the viewport, empty where the image is beside it.
+    pub fn under(&self, size: vk::Extent2D) -> ([i32; 2], vk::Rect2D) {
+        let along = |origin: i32, size: u32, whole: u32| {
+            let first = i64::from(origin).max(0);
+            let last = (i64::from(origin) + i64::from(size)).min(whole.into());
+            let begin = (first - i64::from(origin)) as i32;
+            (first as i32, begin, (last - first).max(0) as u32)
+        };
+        let (x, left, width) = along(self.origin.x, size.width, self.extent.width);
+        let (y, top, height) = along(self.origin.y, size.height, self.extent.height);
+        let part = vk::Rect2D {
+            offset: vk::Offset2D { x: left, y: top },
+            extent: vk::Extent2D { width, height },
+        };
+        ([x, y], part)
+    }
 }
 
 /// The grid for a linear number of workgroups: a row while `limit` allows, else rows of [`GROUP_COLUMNS`], the last of
@@ -173,6 +197,36 @@ impl<'a> Recorder<'a> {
         params: &[u32],
         groups: Groups<'_>,
     ) {
+        self.dispatch_on(pipeline, buffers, params, groups, None);
+    }
+
+    /// The same of a shader that reads an image.
+    ///
+    /// # Safety
+    /// The view is this device's and outlives the execution, its image has the layout, and what was written there is visible to
+    /// sampling by compute shaders.
+    pub unsafe fn dispatch_on_image(
+        &mut self,
+        pipeline: &ComputePipeline,
+        buffers: &[&Buffer],
+        params: &[u32],
+        groups: Groups<'_>,
+        (view, layout): (vk::ImageView, vk::ImageLayout),
+    ) {
+        let image = vk::DescriptorImageInfo::default()
+            .image_view(view)
+            .image_layout(layout);
+        self.dispatch_on(pipeline, buffers, params, groups, Some(image));
+    }
+
+    fn dispatch_on(
+        &mut self,
+        pipeline: &ComputePipeline,
+        buffers: &[&Buffer],
+        params: &[u32],
+        groups: Groups<'_>,
+        image: Option<vk::DescriptorImageInfo>,
+    ) {
         let inner = pipeline.inner();
         inner.layout.check(pipeline.name(), buffers, params);
         if matches!(groups, Groups::Count(0)) {
@@ -197,7 +251,7 @@ impl<'a> Recorder<'a> {
         self.before(&uses[..count]);
         #[cfg(feature = "lab")]
         self.device.note_dispatch(pipeline.name(), groups);
-        let record = |this: &mut Self| this.dispatch_now(pipeline, buffers, params, groups);
+        let record = |this: &mut Self| this.dispatch_now(pipeline, buffers, params, groups, image);
         if self.times_dispatches() {
             self.timed(pipeline.name(), |this| {
                 this.await_timestamp();
@@ -224,6 +278,7 @@ impl<'a> Recorder<'a> {
         buffers: &[&Buffer],
         params: &[u32],
         groups: Groups<'_>,
+        image: Option<vk::DescriptorImageInfo>,
     ) {
         let inner = pipeline.inner();
         let raw = self.device.raw();
@@ -231,9 +286,13 @@ impl<'a> Recorder<'a> {
         // the limits and the arguments lie inside their buffer.
         unsafe {
             raw.cmd_bind_pipeline(self.cmd, vk::PipelineBindPoint::COMPUTE, inner.raw);
-            inner
-                .layout
-                .push(self.cmd, vk::PipelineBindPoint::COMPUTE, buffers, params);
+            inner.layout.push(
+                self.cmd,
+                vk::PipelineBindPoint::COMPUTE,
+                buffers,
+                params,
+                image,
+            );
             match groups {
                 Groups::Count(count) => {
                     let [x, y, z] = group_grid(count, self.device.support().max_group_count);
@@ -312,34 +371,18 @@ impl<'a> Recorder<'a> {
         };
     }
 
-    /// Copies the depths of a host's image that lie under a viewport of some size, row by row and without gaps, and says
-    /// which part of the viewport that is; pixels beside the image are left out.
+    /// Copies the depths of a host's image that lie under a viewport of some size, row by row and without gaps.
     ///
     /// # Safety
     /// The image is as its description says, its depths are visible to `COPY` by `TRANSFER_READ`, and it outlives the
     /// execution.
-    pub unsafe fn copy_depth(
-        &mut self,
-        from: &DepthImage,
-        to: &Buffer,
-        size: vk::Extent2D,
-    ) -> vk::Rect2D {
-        let along = |origin: i32, size: u32, whole: u32| {
-            let first = i64::from(origin).max(0);
-            let last = (i64::from(origin) + i64::from(size)).min(whole.into());
-            let begin = (first - i64::from(origin)) as i32;
-            (first as i32, begin, (last - first).max(0) as u32)
-        };
-        let (x, left, width) = along(from.origin.x, size.width, from.extent.width);
-        let (y, top, height) = along(from.origin.y, size.height, from.extent.height);
-        let part = vk::Rect2D {
-            offset: vk::Offset2D { x: left, y: top },
-            extent: vk::Extent2D { width, height },
-        };
-        if width == 0 || height == 0 {
-            return part;
+    pub unsafe fn copy_depth(&mut self, from: &DepthImage, to: &Buffer, size: vk::Extent2D) {
+        let ([x, y], part) = from.under(size);
+        if part.extent.width == 0 || part.extent.height == 0 {
+            return;
         }
-        to.check_range(0, u64::from(width) * u64::from(height) * 4);
+        let pixels = u64::from(part.extent.width) * u64::from(part.extent.height);
+        to.check_range(0, pixels * 4);
         self.before(&[(to.handle(), Access::TransferWrite)]);
         let region = vk::BufferImageCopy::default()
             .image_subresource(
@@ -361,7 +404,6 @@ impl<'a> Recorder<'a> {
                 &[region],
             )
         };
-        part
     }
 
     /// Copies regions, none of which meets another, from a buffer that is not ours to one that is.

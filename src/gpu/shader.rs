@@ -57,6 +57,8 @@ pub struct Shader {
     pub buffers: &'static [BufferUse],
     /// True when it has subgroup operations. Where the device can be asked for whole subgroups of a size, it is.
     pub subgroups: bool,
+    /// True when it reads an image, which is bound behind all buffers, at [`MAX_BUFFERS`].
+    pub image: bool,
 }
 
 impl Shader {

@@ -182,7 +182,7 @@ impl CheckedEdit {
                 recorder,
                 (buffers, |buffer| buffer),
                 self.params,
-                groups,
+                (groups, None),
             );
         });
         scene.hold(self.index, self.layer);

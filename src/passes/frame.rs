@@ -19,8 +19,8 @@ use crate::passes::stage::{Stage, Targets};
 use crate::passes::storage::Storage;
 use crate::passes::work::Work;
 use crate::passes::{
-    bin, blocks, classify, clip, compact, composite, cutoff, depth, motion, project, reclip,
-    shared, sort, splat, tiles,
+    bin, blocks, classify, clip, compact, composite, cutoff, depth, motion, occluders, project,
+    reclip, shared, sort, splat, tiles,
 };
 use crate::types::{FrameData, LayerData, LayerMotion};
 use rara_gpu::{Buffer, Recorder};
@@ -33,7 +33,9 @@ static OF_CUT: [&Stage<CutPlan>; 1] = [
 
 /// The stages of an eye. Nothing waits or is read back in between; each stage's work follows from what the earlier ones left on
 /// the device.
-static OF_EYE: [&Stage<EyePlan>; 12] = [
+static OF_EYE: [&Stage<EyePlan>; 13] = [
+    // Reads the host's depth where it is sampled.
+    &occluders::STAGE,
     // Finds which blocks are in view.
     &blocks::STAGE,
     // Finds which Gaussians are in view, in the blocks that are so in part.

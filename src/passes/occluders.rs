@@ -1,9 +1,54 @@
-//! The depth that the host has drawn already, copied to where the tiles' compute shader can read it.
+//! The depth that the host has drawn already, copied to where the tiles' compute shader can read it, or sampled by stage
+//! `host_depth`.
 
 use ash::vk;
 
+use crate::passes::eye_plan::EyePlan;
+use crate::passes::pipelines::FromPlan;
+use crate::passes::recording::{Groups, Recording};
+use crate::passes::shaders::host_depth;
+use crate::passes::stage::Stage;
+use crate::passes::storage::buffers;
+use crate::passes::{shared, tiles};
 use crate::types;
+use rara_base::limits;
 use rara_scene::depth::DepthMap;
+
+/// Reads depths that are sampled.
+pub(super) static STAGE: Stage<EyePlan> = Stage {
+    name: "host_depth",
+    needed: |plan| plan.occluders.is_some_and(|occluders| occluders.sampled),
+    missed: |_| false,
+    memory: &[],
+    record,
+};
+
+fn record(recording: &mut Recording<'_, '_, EyePlan>) {
+    let under = recording.depth().copied();
+    let (first, size) = under.map_or(([0; 2], vk::Extent2D::default()), |depth| {
+        (depth.first, depth.part.extent)
+    });
+    let params = host_depth::Params {
+        first,
+        size: [size.width, size.height],
+    };
+    let buffers = buffers!(host_depth {
+        shared::MEMORY => [frame],
+        tiles::MEMORY => [occluders],
+    });
+    // More than enough where a word holds two pixels.
+    let words = size.width * size.height;
+    let groups = Groups::Count(words.div_ceil(limits::HOST_DEPTH_GROUP_SIZE));
+    recording.dispatch(buffers, params, groups);
+}
+
+impl FromPlan<EyePlan> for host_depth::Constants {
+    fn from_plan(plan: &EyePlan) -> Self {
+        Self {
+            depth_form: plan.occluders.map_or(types::DEPTH_NONE, |o| o.form),
+        }
+    }
+}
 
 /// How the host's depth hides the splats of tiles.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -14,13 +59,15 @@ pub(crate) struct Occluders {
     pub(crate) map: DepthMap,
     /// True when they hide what lies behind them of a splat, not whole splats by their centres.
     pub(crate) soft: bool,
+    /// True when they are sampled, not copied.
+    pub(crate) sampled: bool,
     /// The picture's size, px.
     pub(crate) size: vk::Extent2D,
 }
 
 impl Occluders {
     /// The occluders of a host whose depth has this format and meaning, in a picture of no size yet.
-    pub(crate) fn new(format: vk::Format, map: DepthMap, soft: bool) -> Self {
+    pub(crate) fn new(format: vk::Format, map: DepthMap) -> Self {
         let form = match format {
             vk::Format::D16_UNORM | vk::Format::D16_UNORM_S8_UINT => types::DEPTH_16,
             vk::Format::X8_D24_UNORM_PACK32 | vk::Format::D24_UNORM_S8_UINT => types::DEPTH_24,
@@ -29,7 +76,8 @@ impl Occluders {
         Self {
             form,
             map,
-            soft,
+            soft: false,
+            sampled: false,
             size: vk::Extent2D::default(),
         }
     }

@@ -95,18 +95,25 @@ impl<P: Interface> Pipeline<P> {
         self.key.clone()
     }
 
-    /// Records a dispatch; the function finds the buffers.
+    /// Records a dispatch; the function finds the buffers, and a shader that reads an image gets that.
     pub(super) fn dispatch<'b, B: Copy>(
         &self,
         pipelines: &Pipelines,
         recorder: &mut Recorder<'_>,
         (buffers, buffer): (P::Buffers<B>, impl Fn(B) -> &'b Buffer),
         params: P::Params,
-        groups: Groups<'_>,
+        (groups, image): (Groups<'_>, Option<(vk::ImageView, vk::ImageLayout)>),
     ) {
         let pipeline = &pipelines.compute[&self.key];
         let buffers: BufferList<_> = buffers.list().into_iter().map(buffer).collect();
-        recorder.dispatch(pipeline, &buffers, words(&params), groups);
+        let params = words(&params);
+        match image.filter(|_| self.key.shader.0.image) {
+            None => recorder.dispatch(pipeline, &buffers, params, groups),
+            // SAFETY: whoever gave the host's depth promised what is asked for here.
+            Some(image) => unsafe {
+                recorder.dispatch_on_image(pipeline, &buffers, params, groups, image);
+            },
+        }
     }
 }
 

@@ -1,10 +1,8 @@
 //! What a stage records with: its commands go into a command buffer, or, dry, leave the pipelines that they need.
 
-use ash::vk;
-
 use crate::passes::owner::Owner;
 use crate::passes::pipelines::{FromPlan, Pipeline, PipelineKey};
-use crate::passes::resources::Resources;
+use crate::passes::resources::{DepthUnder, Resources};
 use crate::passes::shaders::{BufferSet, Compute, Interface};
 use rara_gpu::{self, Recorder};
 
@@ -59,11 +57,11 @@ impl<'a, 'r, P: Owner> Recording<'a, 'r, P> {
         }
     }
 
-    /// The rectangle of the host's depth under the picture, for tiles that it hides.
-    pub(super) fn copied(&self) -> vk::Rect2D {
+    /// The host's depth, for tiles that it hides.
+    pub(super) fn depth(&self) -> Option<&DepthUnder> {
         match &self.target {
-            Target::Dry(_) => vk::Rect2D::default(),
-            Target::Commands(_, resources) => resources.copied(),
+            Target::Dry(_) => None,
+            Target::Commands(_, resources) => resources.depth(),
         }
     }
 
@@ -98,7 +96,14 @@ impl<'a, 'r, P: Owner> Recording<'a, 'r, P> {
                     }
                 };
                 let pipelines = resources.pipelines();
-                pipeline.dispatch(pipelines, recorder, (buffers, buffer), params, groups);
+                let depth = resources.depth().map(|depth| depth.sampled);
+                pipeline.dispatch(
+                    pipelines,
+                    recorder,
+                    (buffers, buffer),
+                    params,
+                    (groups, depth),
+                );
             }
         }
     }

@@ -17,10 +17,21 @@ pub(crate) trait Resources<Name> {
 
     fn pipelines(&self) -> &Pipelines;
 
-    /// The rectangle of the host's depth under the picture, for tiles that it hides.
-    fn copied(&self) -> vk::Rect2D {
-        vk::Rect2D::default()
+    /// The host's depth, for tiles that it hides.
+    fn depth(&self) -> Option<&DepthUnder> {
+        None
     }
+}
+
+/// A host's depth under a picture.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct DepthUnder {
+    /// Where in the picture it is.
+    pub(crate) part: vk::Rect2D,
+    /// The pixel of the image at which the part begins.
+    pub(crate) first: [i32; 2],
+    /// What is sampled, and its layout, where the depth is not copied.
+    pub(crate) sampled: (vk::ImageView, vk::ImageLayout),
 }
 
 /// A buffer of a scene.
@@ -84,8 +95,8 @@ pub(crate) struct CutResources<'a> {
 pub(crate) struct EyeResources<'a> {
     pub(crate) cut: CutResources<'a>,
     pub(crate) buffers: &'a Buffers<EyePlan>,
-    /// The rectangle of the host's depth under the picture, for tiles that it hides.
-    pub(crate) copied: vk::Rect2D,
+    /// The host's depth, for tiles that it hides.
+    pub(crate) depth: Option<DepthUnder>,
     /// Where the layers have the camera and where they had it in the frame before, for motion.
     pub(crate) sights: [Option<&'a Sight>; 2],
 }
@@ -115,7 +126,7 @@ impl Resources<EyeName> for EyeResources<'_> {
         self.cut.pipelines
     }
 
-    fn copied(&self) -> vk::Rect2D {
-        self.copied
+    fn depth(&self) -> Option<&DepthUnder> {
+        self.depth.as_ref()
     }
 }

@@ -123,7 +123,11 @@ fn pipeline(plan: &EyePlan, list: List) -> Pipeline<tiles::Program> {
 fn record(recording: &mut Recording<'_, '_, EyePlan>) {
     let plan = recording.plan;
     let [depth_offset, depth_scale] = plan.occluders.map_or([0.0; 2], |o| o.map.factors());
-    let (at, size) = (recording.copied().offset, recording.copied().extent);
+    let under = recording
+        .depth()
+        .map(|depth| depth.part)
+        .unwrap_or_default();
+    let (at, size) = (under.offset, under.extent);
     let params = tiles::Params {
         principal_point: plan.principal_point([0.0; 2]),
         sigma: plan.cut.data.region.sigma,

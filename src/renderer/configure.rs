@@ -291,9 +291,11 @@ impl Renderer {
             tile_work: TileWork::suiting(shape, self.device.support().subgroup_size),
             picture: None,
             pair_capacity: 0,
-            occluders: readable
-                .zip(depth_map)
-                .map(|(depth, map)| Occluders::new(depth.format, map, depth.soft)),
+            occluders: readable.zip(depth_map).map(|(depth, map)| Occluders {
+                soft: depth.soft,
+                sampled: depth.sampled,
+                ..Occluders::new(depth.format, map)
+            }),
             expects_depth: self.desc.expected_depth.is_some(),
             write_alpha: readable.and_then(|depth| depth.write_alpha),
             draws_motion: self.desc.motion.is_some(),

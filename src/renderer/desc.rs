@@ -96,6 +96,10 @@ pub struct DepthDesc {
     /// splats that half-covering meshes go through end smoothly. Else a splat is hidden whole, by the depth of its centre. It
     /// needs `readable` and tiles.
     pub soft: bool,
+    /// True when [`Renderer::prepare`](super::Renderer::prepare) is given a view of the depth to sample
+    /// ([`DepthImage::view`](crate::gpu::DepthImage::view)) in place of an image to copy, for hosts whose depth is no source of
+    /// transfers. It needs `readable` and `VK_KHR_push_descriptor`.
+    pub sampled: bool,
 }
 
 setters!(DepthDesc {
@@ -103,6 +107,7 @@ setters!(DepthDesc {
     readable: bool,
     write_alpha: Option<f32>,
     soft: bool,
+    sampled: bool,
 });
 
 /// The target of expected depths.
@@ -166,6 +171,7 @@ impl DepthDesc {
             readable: false,
             write_alpha: None,
             soft: false,
+            sampled: false,
         }
     }
 }
@@ -330,9 +336,16 @@ impl RendererDesc {
                 refuse("which lacks compute")
             }
             Some(flags) if flags.contains(vk::QueueFlags::GRAPHICS) => Ok(()),
-            Some(_) if self.depth.is_some_and(|depth| depth.readable) => refuse(
-                "which lacks graphics, and DepthDesc::readable is set: Vulkan copies depths only in a family with graphics",
-            ),
+            Some(_)
+                if self
+                    .depth
+                    .is_some_and(|depth| depth.readable && !depth.sampled) =>
+            {
+                refuse(
+                    "which lacks graphics, and DepthDesc::readable is set: Vulkan copies depths only in a family with graphics; \
+                 set DepthDesc::sampled, and give a view",
+                )
+            }
             Some(_) if self.statistics => refuse(
                 "which lacks graphics, and RendererDesc::statistics is set, which counts what draws do too",
             ),
@@ -377,6 +390,7 @@ impl RendererDesc {
                 depth.write_alpha.is_some(),
             ),
             ("soft", "hide parts of splats", depth.soft),
+            ("sampled", "sample depths", depth.sampled),
         ];
         if let Some((field, act, _)) = of_tiles.iter().find(|(.., set)| *set && !depth.readable) {
             return Err(Error::Invalid(format!(
@@ -384,6 +398,12 @@ impl RendererDesc {
             )));
         }
         let name = &device.info().name;
+        if depth.sampled && !device.support().push_descriptor {
+            return Err(Error::Device(format!(
+                "{name} cannot sample a host's depth (DepthDesc::sampled): it lacks VK_KHR_push_descriptor or was made without; \
+                 give the image, to be copied"
+            )));
+        }
         let as_depth = vk::FormatFeatureFlags::DEPTH_STENCIL_ATTACHMENT;
         if !device.format_features(format).contains(as_depth) {
             return Err(Error::Device(format!(

@@ -7,8 +7,8 @@ use ash::vk;
 use super::frame::{FrameCut, FrameState};
 use super::{ConfiguredFrame, MotionDesc, PreparedFrame, Renderer, out_of_order};
 use crate::passes::{
-    self, CutResources, EyeResources, Part, PreviousFrame, SceneBuffers, Work, composite, motion,
-    tiles,
+    self, CutResources, DepthUnder, EyeResources, Part, PreviousFrame, SceneBuffers, Work,
+    composite, motion, tiles,
 };
 use rara_base::error::Result;
 use rara_gpu::{DepthImage, Drawer, Draws, Recorder};
@@ -58,6 +58,17 @@ impl Renderer {
             }
             _ => {}
         }
+        let is_view = depth.is_some_and(|depth| depth.view != vk::ImageView::null());
+        if is_view
+            != self
+                .desc
+                .depth
+                .is_some_and(|depth| depth.readable && depth.sampled)
+        {
+            return out_of_order(
+                "prepare takes a view of the host's depth (DepthImage::view) where DepthDesc::sampled promises one, and nowhere else",
+            );
+        }
         let owns_cut = match &state.cut {
             FrameCut::Own(_) => true,
             FrameCut::Seen(cut) if cut.is_recorded() => false,
@@ -82,10 +93,18 @@ impl Renderer {
             // SAFETY: the caller promises that `cmd` is recording, outside a rendering scope.
             let mut recorder =
                 unsafe { Recorder::begin(&self.device, cmd, draws, slot.timer.as_mut()) };
-            let copied = depth.zip(plan.occluders).map(|(depth, occluders)| {
-                let to = tiles::occluders(&state.buffers);
-                // SAFETY: the caller promises the image, its layout and that its depths are visible.
-                unsafe { recorder.copy_depth(depth, to, occluders.size) }
+            let depth = depth.zip(plan.occluders).map(|(depth, occluders)| {
+                let (first, part) = depth.under(occluders.size);
+                if !occluders.sampled {
+                    let to = tiles::occluders(&state.buffers);
+                    // SAFETY: the caller promises the image, its layout and that its depths are visible.
+                    unsafe { recorder.copy_depth(depth, to, occluders.size) };
+                }
+                DepthUnder {
+                    part,
+                    first,
+                    sampled: (depth.view, depth.layout),
+                }
             });
             let resources = EyeResources {
                 cut: CutResources {
@@ -94,7 +113,7 @@ impl Renderer {
                     buffers: state.cut.buffers(),
                 },
                 buffers: &state.buffers,
-                copied: copied.unwrap_or_default(),
+                depth,
                 sights: [state.decision.sight.as_ref(), self.seen.as_ref()],
             };
             recorder.under(self.name.as_deref(), |recorder| {

@@ -36,6 +36,7 @@ const BEND: Shader = {
             common: false,
         }],
         subgroups: false,
+        image: false,
     }
 };
 

@@ -203,5 +203,6 @@ fn shader(bytes: &[u8]) -> Result<&'static Shader> {
             },
         ],
         subgroups: false,
+        image: false,
     })))
 }

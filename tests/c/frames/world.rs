@@ -284,6 +284,7 @@ fn depth_image_in_c(shown: &DepthImage) -> RaraDepthImage {
         let filled = rara_depth_image_default(&mut image, size, shown.image, width, height);
         assert_ok(filled);
         (image.layout, image.layer) = (shown.layout, shown.layer);
+        image.view = shown.view;
         (image.x, image.y) = (shown.origin.x, shown.origin.y);
         image
     }

@@ -51,9 +51,15 @@ impl Canvas {
         let before = |cmd| {
             let mut renderer = renderer.borrow_mut();
             let (depth, configured) = (frame.behind.as_ref(), configured.take().expect("once"));
-            // SAFETY: `cmd` is recording outside a scope, a depth is ready to be copied, and all is waited for.
-            let made = unsafe { renderer.prepare(cmd, scene, depth, configured) };
-            prepared.get_or_init(|| made.expect("prepares"));
+            let prepare = || {
+                // SAFETY: `cmd` is recording outside a scope, a depth is ready to be read, and all is waited for.
+                let made = unsafe { renderer.prepare(cmd, scene, depth, configured) };
+                prepared.get_or_init(|| made.expect("prepares"));
+            };
+            match depth {
+                Some(depth) if depth.view != vk::ImageView::null() => self.sampling(cmd, prepare),
+                _ => prepare(),
+            }
         };
         let inside = |cmd| {
             let (x, y) = frame.origin;

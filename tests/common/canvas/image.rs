@@ -2,7 +2,7 @@
 
 use rara::ash::vk;
 
-use super::{COLOR, COPIED, Canvas, DEPTH, UNDEFINED};
+use super::{COLOR, COPIED, Canvas, DEPTH, SAMPLED, UNDEFINED};
 
 pub(super) struct Image {
     pub(super) raw: vk::Image,
@@ -94,6 +94,7 @@ impl Canvas {
                     | vk::AccessFlags2::DEPTH_STENCIL_ATTACHMENT_WRITE
             }
             COPIED => vk::AccessFlags2::TRANSFER_READ,
+            SAMPLED => vk::AccessFlags2::SHADER_READ,
             _ => vk::AccessFlags2::NONE,
         };
         let barrier = [vk::ImageMemoryBarrier2::default()

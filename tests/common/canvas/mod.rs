@@ -114,6 +114,7 @@ pub type Scope<'a> = (
 const COLOR: vk::ImageLayout = vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL;
 const DEPTH: vk::ImageLayout = vk::ImageLayout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL;
 const COPIED: vk::ImageLayout = vk::ImageLayout::TRANSFER_SRC_OPTIMAL;
+const SAMPLED: vk::ImageLayout = vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL;
 const UNDEFINED: vk::Format = vk::Format::UNDEFINED;
 
 impl Canvas {
@@ -137,7 +138,9 @@ impl Canvas {
         let d = &canvas.desc;
         let (as_color, as_depth) = (
             vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::TRANSFER_SRC,
-            vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT | vk::ImageUsageFlags::TRANSFER_SRC,
+            vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT
+                | vk::ImageUsageFlags::TRANSFER_SRC
+                | vk::ImageUsageFlags::SAMPLED,
         );
         let color = canvas.image(d.color, as_color, d.samples);
         let resolved = (d.samples != one).then(|| canvas.image(d.color, as_color, one));
@@ -164,11 +167,34 @@ impl Canvas {
         let depth = self.resolved_depth.as_ref().or(self.depth.as_ref());
         DepthImage {
             image: depth.expect("a depth buffer").raw,
+            view: vk::ImageView::null(),
             layout: COPIED,
             extent: self.desc.extent,
             layer: 0,
             origin: vk::Offset2D { x, y },
         }
+    }
+
+    /// The same as it is sampled, by what [`sampling`](Self::sampling) records.
+    pub fn depth_view(&self, x: i32, y: i32) -> DepthImage {
+        let depth = self.resolved_depth.as_ref().or(self.depth.as_ref());
+        DepthImage {
+            image: vk::Image::null(),
+            view: depth.expect("a depth buffer").view,
+            layout: SAMPLED,
+            ..self.depth_image(x, y)
+        }
+    }
+
+    /// Lets what is recorded before a scope sample the depth buffer.
+    pub fn sampling(&self, cmd: vk::CommandBuffer, record: impl FnOnce()) {
+        let depth = self.resolved_depth.as_ref().or(self.depth.as_ref());
+        let depth = depth.expect("a depth buffer");
+        // SAFETY: called from within `draw`, whose command buffer is recording outside a scope.
+        unsafe { self.turn(cmd, depth, COPIED, SAMPLED) };
+        record();
+        // SAFETY: as above.
+        unsafe { self.turn(cmd, depth, SAMPLED, COPIED) };
     }
 
     /// Sets viewport and scissor.

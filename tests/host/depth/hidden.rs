@@ -155,6 +155,46 @@ fn depths_in_few_bits_hide_the_same_splats_in_every_way_of_drawing() {
     });
 }
 
+/// A depth that is sampled hides what its copy does, byte for byte, also where the image covers a part of the picture.
+#[test]
+fn a_depth_that_is_sampled_hides_what_its_copy_does() {
+    let world = World::new();
+    let map = maps()[0];
+    with_host(true, |host, device| {
+        let first = first(device);
+        let on = (device, &first);
+        for (format, bindings, shift) in [
+            (vk::Format::D32_SFLOAT, Bindings::Address, 0),
+            (vk::Format::D32_SFLOAT, Bindings::Bound, 50),
+            (vk::Format::D16_UNORM, Bindings::Mixed, -51),
+            (vk::Format::X8_D24_UNORM_PACK32, Bindings::Mixed, 0),
+        ] {
+            if !device
+                .format_features(format)
+                .contains(vk::FormatFeatureFlags::DEPTH_STENCIL_ATTACHMENT)
+            {
+                continue;
+            }
+            let desc = canvas(&world, map, format);
+            let depth = depth_desc(&desc, map, true);
+            let canvas = Canvas::new(&host.lend(), device, desc);
+            let draw = |sampled| {
+                let desc = RendererDesc::new(FLOATS)
+                    .depth(Some(depth.sampled(sampled)))
+                    .bindings(bindings);
+                let mut behind = match sampled {
+                    true => canvas.depth_view(ORIGIN.0, ORIGIN.1),
+                    false => canvas.depth_image(ORIGIN.0, ORIGIN.1),
+                };
+                behind.origin.x += shift;
+                draw_behind(on, &canvas, &world, desc, Raster::Tiles, Some(behind)).0
+            };
+            let (sampled, copied) = (draw(true), draw(false));
+            assert!(sampled == copied, "{format:?}, {bindings:?}, {shift}");
+        }
+    });
+}
+
 /// A depth image that is not under the picture hides nothing, and nothing beside its copy is read.
 #[test]
 fn a_depth_image_beside_the_picture_hides_nothing() {

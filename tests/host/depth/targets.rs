@@ -147,4 +147,28 @@ fn a_promised_depth_that_is_not_given_is_refused() {
     let refused = unsafe { renderer.prepare(vk::CommandBuffer::null(), &scene, None, configured) };
     let text = refused.unwrap_err().to_string();
     assert!(text.contains("promised the host's depth"), "{text}");
+    // An image where a view to sample was promised, and the other way round.
+    let image = DepthImage {
+        image: vk::Image::null(),
+        view: vk::ImageView::null(),
+        layout: vk::ImageLayout::GENERAL,
+        extent: vk::Extent2D::default(),
+        layer: 0,
+        origin: vk::Offset2D::default(),
+    };
+    let view = DepthImage {
+        view: vk::Handle::from_raw(1),
+        ..image
+    };
+    for (sampled, given) in [(true, image), (false, view)] {
+        let desc = desc.depth(Some(depth.sampled(sampled)));
+        let mut renderer = renderer.sharing(desc).expect("another");
+        let configured =
+            renderer.configure(&scene, &world.camera, &world.clip, &Settings::default());
+        let (cmd, configured) = (vk::CommandBuffer::null(), configured.expect("configures"));
+        // SAFETY: refused before anything is recorded.
+        let refused = unsafe { renderer.prepare(cmd, &scene, Some(&given), configured) };
+        let text = refused.unwrap_err().to_string();
+        assert!(text.contains("DepthDesc::sampled"), "{text}");
+    }
 }

@@ -55,6 +55,7 @@ const ADD: Shader = Shader {
         used("target", 1, BufferAccess::Write),
     ],
     subgroups: false,
+    image: false,
 };
 const VERTEX: Shader = Shader {
     name: "square",
@@ -65,6 +66,7 @@ const VERTEX: Shader = Shader {
     mixed: spirv!("square.vert.address"),
     buffers: &[used("corners", 0, BufferAccess::Read)],
     subgroups: false,
+    image: false,
 };
 const MESH: Shader = Shader {
     name: "square",
@@ -75,6 +77,7 @@ const MESH: Shader = Shader {
     mixed: spirv!("square.mesh.address"),
     buffers: &[used("corners", 0, BufferAccess::Read)],
     subgroups: false,
+    image: false,
 };
 const FRAGMENT: Shader = Shader {
     name: "square",
@@ -85,6 +88,7 @@ const FRAGMENT: Shader = Shader {
     mixed: spirv!("square.frag.address"),
     buffers: &[used("paint", 1, BufferAccess::Read)],
     subgroups: false,
+    image: false,
 };
 
 /// The ways to reach buffers on this device.

@@ -62,6 +62,7 @@ impl Target {
         DepthImage {
             // SAFETY: as above.
             image: unsafe { texture.raw_handle() },
+            view: vk::ImageView::null(),
             layout: vk::ImageLayout::TRANSFER_SRC_OPTIMAL, // that is what `TextureUses::COPY_SRC` means
             extent: self.area().extent,
             layer: 0,

@@ -3,7 +3,10 @@
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
+use ash::util::read_spv;
+
 use super::shader::{Bindings, Shader};
+use rara_base::error::{Error, Result};
 
 /// The folder that is looked into.
 static FOLDER: Mutex<Option<PathBuf>> = Mutex::new(None);
@@ -16,14 +19,17 @@ pub fn replace_modules(folder: Option<&Path>) {
 }
 
 /// The words of a shader's module in that folder.
-pub(super) fn replaced(shader: &Shader, bindings: Bindings) -> Option<Vec<u32>> {
-    let place = FOLDER.lock().unwrap_or_else(PoisonError::into_inner);
+pub(super) fn replaced(shader: &Shader, bindings: Bindings) -> Result<Option<Vec<u32>>> {
     let way = match bindings {
         Bindings::Address => "address",
         Bindings::Bound => "bound",
         Bindings::Mixed => "mixed",
     };
-    let bytes = std::fs::read(place.as_ref()?.join(format!("{}.{way}.spv", shader.file))).ok()?;
-    let words = bytes.as_chunks().0.iter();
-    Some(words.map(|word| u32::from_le_bytes(*word)).collect())
+    let place = FOLDER.lock().unwrap_or_else(PoisonError::into_inner);
+    let file = |folder: &PathBuf| folder.join(format!("{}.{way}.spv", shader.file));
+    let Some(file) = place.as_ref().map(file).filter(|file| file.exists()) else {
+        return Ok(None);
+    };
+    let mut opened = std::fs::File::open(&file).map_err(Error::io(&file))?;
+    read_spv(&mut opened).map(Some).map_err(Error::io(file))
 }

@@ -310,11 +310,11 @@ impl<'a> Module<'a> {
         bindings: Bindings,
         constants: &[(u32, u32)],
     ) -> Result<Self> {
+        let code = shader.code(bindings);
         #[cfg(feature = "lab")]
-        let replaced = super::modules::replaced(shader, bindings);
-        #[cfg(not(feature = "lab"))]
-        let replaced: Option<Vec<u32>> = None;
-        let code = replaced.as_deref().unwrap_or(shader.code(bindings));
+        let replaced = super::modules::replaced(shader, bindings)?;
+        #[cfg(feature = "lab")]
+        let code = replaced.as_deref().unwrap_or(code);
         let code = specialized(code, constants);
         let info = vk::ShaderModuleCreateInfo::default().code(&code);
         // SAFETY: the device is alive, and the words are SPIR-V that this crate's build compiled and checked, with values

@@ -1,4 +1,4 @@
-//! What dispatches cost that do next to nothing, each waiting for the one before: what no frame of so many stages can go below.
+//! Dispatches that do next to nothing, each waiting for the one before: no frame of so many stages takes less time.
 
 use rara::{Headless, Result};
 

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use glam::DVec3;
 use rara::scene::Bounds;
-use rara::{Camera, Clip, Mode, Picture, Plane, Raster, Result};
+use rara::{Camera, Clip, Error, Mode, Picture, Plane, Raster, Result};
 use rara_gpu::replace_modules;
 
 use super::numbers::Measurements;
@@ -13,6 +13,7 @@ use super::run::{Run, in_mode};
 use super::world::World;
 use crate::bench::shapes::regions;
 use crate::frames::{in_turn, timed};
+use crate::measure::differences;
 
 const SIZE: (u32, u32) = (1920, 1080);
 
@@ -31,11 +32,12 @@ pub(super) fn measure(run: &mut Run<'_>, world: &World, numbers: Measurements) -
             clips.push((name, region.clip()));
         }
     }
-    let folders: Vec<_> = run.options.modules.clone();
-    let variants: Vec<Option<&Path>> = [None]
-        .into_iter()
-        .chain(folders.iter().map(|folder| Some(folder.as_path())))
-        .collect();
+    let folders = run.options.modules.clone();
+    for folder in &folders {
+        check(folder)?;
+    }
+    let named = folders.iter().map(|folder| Some(folder.as_path()));
+    let variants: Vec<Option<&Path>> = [None].into_iter().chain(named).collect();
     let mut drawn = variants
         .iter()
         .map(|_| run.headless(world))
@@ -59,7 +61,7 @@ pub(super) fn measure(run: &mut Run<'_>, world: &World, numbers: Measurements) -
             let name = folder.map_or("exact".into(), |name| name.to_string_lossy());
             numbers.add_frames(&name, frames);
             if variant.is_some() {
-                let apart = apart(picture, &pictures[0]);
+                let apart = differences(picture, &pictures[0])?.max;
                 numbers.add(&name, "apart from the first", "of 255", vec![apart]);
             }
         }
@@ -69,9 +71,17 @@ pub(super) fn measure(run: &mut Run<'_>, world: &World, numbers: Measurements) -
     Ok(())
 }
 
-/// How far the channels of two pictures of one size are apart at most, of 255.
-fn apart(a: &Picture, b: &Picture) -> f64 {
-    let channels = a.pixels.iter().flatten().zip(b.pixels.iter().flatten());
-    let apart = channels.map(|(a, b)| f64::from((a - b).abs()));
-    255.0 * apart.fold(0.0, f64::max)
+/// Refuses a folder without modules, which would be measured as the program's own.
+fn check(folder: &Path) -> Result<()> {
+    let files = std::fs::read_dir(folder).map_err(Error::io(folder))?;
+    let mut modules = files
+        .flatten()
+        .filter(|file| file.path().extension().is_some_and(|end| end == "spv"));
+    match modules.next() {
+        Some(_) => Ok(()),
+        None => Err(Error::Invalid(format!(
+            "{} holds no SPIR-V module (*.spv); tools/variants makes such folders",
+            folder.display()
+        ))),
+    }
 }

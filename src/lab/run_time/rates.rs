@@ -111,6 +111,13 @@ impl Rates {
         let one = |_| Groups::Indirect(&self.splats, 0);
         let none = |_| Groups::Indirect(&self.splats, 16);
         let written = |even| Groups::Indirect(if even { from } else { to }, 0);
+        // Commands for one workgroup, and one for none.
+        self.seconds(|recorder| {
+            recorder.fill(&self.splats, 0, 16, 1);
+            recorder.fill(&self.splats, 16, 16, 0);
+            recorder.fill(from, 0, 16, 1);
+            recorder.fill(to, 0, 16, 1);
+        })?;
         Ok(vec![
             ("direct", self.chain(64, false, |_| Groups::Count(1))?),
             (
@@ -139,14 +146,6 @@ impl Rates {
     ) -> Result<f64> {
         const CHAIN: u32 = 256;
         let [from, to] = [&self.source, &self.target];
-        // Every word is a command for one workgroup; those for none are with the splats.
-        self.seconds(|recorder| {
-            recorder.fill(&self.splats, 0, 16, 1);
-            recorder.fill(&self.splats, 16, 16, 0);
-            for buffer in [from, to] {
-                recorder.fill(buffer, 0, 1 << 16, 1);
-            }
-        })?;
         let seconds = self.seconds(|recorder| {
             for link in 0..CHAIN {
                 let even = link % 2 == 0;

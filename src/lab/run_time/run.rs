@@ -14,6 +14,7 @@ use crate::table::Table;
 pub struct RunTimeOptions {
     /// The names of the sections; all if empty. `correct` is measured in any case, but for `unchecked`.
     pub sections: Vec<String>,
+    /// Leaves out `correct` where other sections are named.
     pub unchecked: bool,
     /// Tiny scenes and one round: only whether everything runs.
     pub quick: bool,

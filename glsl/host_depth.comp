@@ -7,13 +7,14 @@ struct Params {
     uvec2 size; // of the part under the picture, px
 };
 #define PARAMS Params
-#include "frame.glsl"
+#include "types.glsl"
+#include "buffers.glsl"
 
 layout(constant_id = 0) const uint DEPTH_FORM = DEPTH_FLOAT; // DEPTH_*
 layout(local_size_x = HOST_DEPTH_GROUP_SIZE) in;
 
 layout(set = 0, binding = MAX_BUFFERS) uniform texture2D host_depth;
-BUFFER(writeonly, 1, uint, occluders)
+BUFFER(writeonly, 0, uint, occluders)
 
 uint stored(uint pixel) {
     ivec2 at = push.params.first + ivec2(pixel % push.params.size.x, pixel / push.params.size.x);

@@ -102,13 +102,14 @@ unsafe fn configured<'a>(
 /// another one than the frame prepared last; nothing is recorded then, and the frame is of no more use.
 ///
 /// The part of the depth image under the viewport is copied, at VK_PIPELINE_STAGE_2_COPY_BIT by
-/// VK_ACCESS_2_TRANSFER_READ_BIT: the host's barrier before the call makes its depths visible to that, its barrier after the
-/// call waits for it.
+/// VK_ACCESS_2_TRANSFER_READ_BIT, or where RaraDepthDesc is `sampled`, sampled, at VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT by
+/// VK_ACCESS_2_SHADER_SAMPLED_READ_BIT: the host's barrier before the call makes its depths visible to that, its barrier after
+/// the call waits for it.
 ///
 /// # Safety
 /// `cmd` is recording outside a rendering scope, and will be submitted to the device's queue, or never. `scene` is the
 /// one given to rara_renderer_configure, and lives until the commands have executed; so does the depth image, which is as
-/// its fields say and visible to the copy.
+/// its fields say and visible to what reads it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_renderer_prepare(
     renderer: *mut RaraRenderer,

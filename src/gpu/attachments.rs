@@ -26,7 +26,8 @@ pub struct DepthAttachment {
     pub reversed: bool,
 }
 
-/// The kind of scope that a host draws in: [`Target::DYNAMIC`] or a [`render_pass`](Self::render_pass), with a view mask or without.
+/// The kind of scope that a host draws in: [`Target::DYNAMIC`] or a [`render_pass`](Self::render_pass), with a view mask or
+/// without.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Target {
     /// The pass and its subpass; `None` for dynamic rendering.

@@ -5,6 +5,7 @@ use ash::vk;
 use smallvec::SmallVec;
 
 use super::access::Access;
+use super::depth_image::{DepthImage, DepthUnder};
 use super::device::Device;
 use super::label::{begin_pass, end_pass, under};
 use super::memory::Buffer;
@@ -21,45 +22,6 @@ pub enum Groups<'a> {
     Count(u32),
     /// A `VkDispatchIndirectCommand` in the buffer at this offset, a multiple of 4.
     Indirect(&'a Buffer, u64),
-}
-
-/// A host's depth image, of one sample. It is created with `TRANSFER_SRC` to be copied, or with `SAMPLED` where a view of it is
-/// given.
-#[derive(Debug, Clone, Copy)]
-pub struct DepthImage {
-    /// The image, whose level 0 is copied.
-    pub image: vk::Image,
-    /// A view of the depths alone, 2D, of one level and one layer, that is sampled in place of a copy, where that was promised;
-    /// else null. `image` and `layer` are then unused.
-    pub view: vk::ImageView,
-    /// The layout of the image when it is read: `TRANSFER_SRC_OPTIMAL` or `GENERAL`, or with a view one in which it can be sampled.
-    pub layout: vk::ImageLayout,
-    /// The size of the image, in px.
-    pub extent: vk::Extent2D,
-    /// The layer to copy.
-    pub layer: u32,
-    /// The position of the viewport's upper left corner in the image, in px.
-    pub origin: vk::Offset2D,
-}
-
-impl DepthImage {
-    /// The part of the image that lies under a viewport of some size: the pixel of the image at which it begins, and its place in
-    /// the viewport, empty where the image is beside it.
-    pub fn under(&self, size: vk::Extent2D) -> ([i32; 2], vk::Rect2D) {
-        let along = |origin: i32, size: u32, whole: u32| {
-            let first = i64::from(origin).max(0);
-            let last = (i64::from(origin) + i64::from(size)).min(whole.into());
-            let begin = (first - i64::from(origin)) as i32;
-            (first as i32, begin, (last - first).max(0) as u32)
-        };
-        let (x, left, width) = along(self.origin.x, size.width, self.extent.width);
-        let (y, top, height) = along(self.origin.y, size.height, self.extent.height);
-        let part = vk::Rect2D {
-            offset: vk::Offset2D { x: left, y: top },
-            extent: vk::Extent2D { width, height },
-        };
-        ([x, y], part)
-    }
 }
 
 /// The grid for a linear number of workgroups: a row while `limit` allows, else rows of [`GROUP_COLUMNS`], the last of
@@ -371,17 +333,17 @@ impl<'a> Recorder<'a> {
         };
     }
 
-    /// Copies the depths of a host's image that lie under a viewport of some size, row by row and without gaps.
+    /// Copies the depths of a host's image that lie under a viewport, row by row and without gaps.
     ///
     /// # Safety
     /// The image is as its description says, its depths are visible to `COPY` by `TRANSFER_READ`, and it outlives the
     /// execution.
-    pub unsafe fn copy_depth(&mut self, from: &DepthImage, to: &Buffer, size: vk::Extent2D) {
-        let ([x, y], part) = from.under(size);
-        if part.extent.width == 0 || part.extent.height == 0 {
+    pub unsafe fn copy_depth(&mut self, from: &DepthImage, to: &Buffer, under: &DepthUnder) {
+        let ([x, y], extent) = (under.first, under.part.extent);
+        if extent.width == 0 || extent.height == 0 {
             return;
         }
-        let pixels = u64::from(part.extent.width) * u64::from(part.extent.height);
+        let pixels = u64::from(extent.width) * u64::from(extent.height);
         to.check_range(0, pixels * 4);
         self.before(&[(to.handle(), Access::TransferWrite)]);
         let region = vk::BufferImageCopy::default()
@@ -392,7 +354,7 @@ impl<'a> Recorder<'a> {
                     .layer_count(1),
             )
             .image_offset(vk::Offset3D { x, y, z: 0 })
-            .image_extent(part.extent.into());
+            .image_extent(extent.into());
         // SAFETY: `begin`'s contract covers `cmd` and the buffer, which has room for four bytes a pixel, the most that a
         // depth takes; the caller vouches for the image, and the region lies inside.
         unsafe {

@@ -11,7 +11,7 @@ use crate::passes::stage::Targets;
 use crate::passes::storage::buffers;
 use crate::passes::{shared, tiles};
 use crate::types::FrameCounts;
-use rara_gpu::{Attachments, Buffer, DepthUse, Drawer};
+use rara_gpu::{Attachments, Buffer, DepthUse, Drawer, Shader};
 use rara_scene::depth::DepthMap;
 
 /// What is drawn of the tiles' picture.
@@ -33,9 +33,9 @@ pub(crate) fn draw(plan: &EyePlan, targets: Targets, part: Part) -> Draw<composi
         Part::ExpectedDepth(attachments) => (&composite::FRAG, attachments, DepthUse::Ignored),
         Part::WrittenDepth => (&composite::DEPTH_FRAG, targets.colour, DepthUse::Written),
     };
-    let view = attachments.target.view();
+    let (front, scope_view) = front([&composite::VERT, &composite::MULTIVIEW_VERT], attachments);
     let constants = composite::Constants {
-        scope_view: view.unwrap_or(0),
+        scope_view,
         linear: converts && targets.linear,
         stored: converts && !targets.linear,
         depths: matches!(part, Part::ExpectedDepth(_)),
@@ -44,11 +44,18 @@ pub(crate) fn draw(plan: &EyePlan, targets: Targets, part: Part) -> Draw<composi
         written_depth: false,
         strongest: false,
     };
-    let front = match view {
-        Some(_) => &composite::MULTIVIEW_VERT,
-        None => &composite::VERT,
-    };
     Draw::new([front, fragment], constants, attachments, depth)
+}
+
+/// The shader of the picture's quads, of one for scopes of one view and one for scopes of several, and the view that it draws.
+pub(super) fn front(
+    [one, several]: [&'static Shader; 2],
+    attachments: Attachments,
+) -> (&'static Shader, u32) {
+    match attachments.target.view() {
+        None => (one, 0),
+        Some(view) => (several, view),
+    }
 }
 
 /// Blends a part of the tiles' picture onto what the host has drawn, inside the host's rendering scope. `origin` is where its

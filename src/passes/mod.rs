@@ -65,7 +65,7 @@ pub(crate) use owner::Owner;
 pub(crate) use pipelines::{PipelineKey, Pipelines};
 pub(crate) use previous_frame::{FoundSides, PreviousFrame};
 pub(crate) use region::shortlist_from;
-pub(crate) use resources::{CutResources, DepthUnder, EyeResources};
+pub(crate) use resources::{CutResources, EyeResources, HostDepth};
 pub use scene_buffers::{SceneBuffers, Staging};
 pub use scene_layer::SceneLayer;
 pub(crate) use sizes::Sizes;

@@ -50,17 +50,14 @@ impl Sight {
 
 /// The draw of the motion of the tiles' picture.
 pub(crate) fn draw(plan: &EyePlan, attachments: Attachments) -> Draw<motion::Program> {
-    let view = attachments.target.view();
+    let fronts = [&motion::VERT, &motion::MULTIVIEW_VERT];
+    let (front, scope_view) = composite::front(fronts, attachments);
     let constants = motion::Constants {
-        scope_view: view.unwrap_or(0),
+        scope_view,
         expected_depth: plan.way.expects_depth,
         written_depth: plan.way.writes_depth,
         strongest: false, // nothing lies behind them
         layered: plan.cut.layers.layers().len() > 1,
-    };
-    let front = match view {
-        Some(_) => &motion::MULTIVIEW_VERT,
-        None => &motion::VERT,
     };
     Draw::new(
         [front, &motion::FRAG],

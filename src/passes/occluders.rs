@@ -9,7 +9,7 @@ use crate::passes::recording::{Groups, Recording};
 use crate::passes::shaders::host_depth;
 use crate::passes::stage::Stage;
 use crate::passes::storage::buffers;
-use crate::passes::{shared, tiles};
+use crate::passes::tiles;
 use crate::types;
 use rara_base::limits;
 use rara_scene::depth::DepthMap;
@@ -24,20 +24,26 @@ pub(super) static STAGE: Stage<EyePlan> = Stage {
 };
 
 fn record(recording: &mut Recording<'_, '_, EyePlan>) {
-    let under = recording.depth().copied();
-    let (first, size) = under.map_or(([0; 2], vk::Extent2D::default()), |depth| {
-        (depth.first, depth.part.extent)
+    let Some(occluders) = recording.plan.occluders else {
+        return;
+    };
+    let under = recording.depth().map(|depth| depth.under);
+    let (first, size) = under.map_or(([0; 2], vk::Extent2D::default()), |under| {
+        (under.first, under.part.extent)
     });
     let params = host_depth::Params {
         first,
         size: [size.width, size.height],
     };
     let buffers = buffers!(host_depth {
-        shared::MEMORY => [frame],
         tiles::MEMORY => [occluders],
     });
-    // More than enough where a word holds two pixels.
-    let words = size.width * size.height;
+    let pixels_of_word = if occluders.form == types::DEPTH_16 {
+        2
+    } else {
+        1
+    };
+    let words = (size.width * size.height).div_ceil(pixels_of_word);
     let groups = Groups::Count(words.div_ceil(limits::HOST_DEPTH_GROUP_SIZE));
     recording.dispatch(buffers, params, groups);
 }

@@ -2,7 +2,7 @@
 
 use crate::passes::owner::Owner;
 use crate::passes::pipelines::{FromPlan, Pipeline, PipelineKey};
-use crate::passes::resources::{DepthUnder, Resources};
+use crate::passes::resources::{HostDepth, Resources};
 use crate::passes::shaders::{BufferSet, Compute, Interface};
 use rara_gpu::{self, Recorder};
 
@@ -58,7 +58,7 @@ impl<'a, 'r, P: Owner> Recording<'a, 'r, P> {
     }
 
     /// The host's depth, for tiles that it hides.
-    pub(super) fn depth(&self) -> Option<&DepthUnder> {
+    pub(super) fn depth(&self) -> Option<&HostDepth> {
         match &self.target {
             Target::Dry(_) => None,
             Target::Commands(_, resources) => resources.depth(),

@@ -9,7 +9,7 @@ use crate::passes::motion::Sight;
 use crate::passes::pipelines::Pipelines;
 use crate::passes::scene_buffers::SceneBuffers;
 use crate::passes::storage::Storage;
-use rara_gpu::Buffer;
+use rara_gpu::{Buffer, DepthUnder};
 
 /// What stages are recorded with.
 pub(crate) trait Resources<Name> {
@@ -18,19 +18,16 @@ pub(crate) trait Resources<Name> {
     fn pipelines(&self) -> &Pipelines;
 
     /// The host's depth, for tiles that it hides.
-    fn depth(&self) -> Option<&DepthUnder> {
+    fn depth(&self) -> Option<&HostDepth> {
         None
     }
 }
 
-/// A host's depth under a picture.
+/// A host's depth as a frame reads it.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct DepthUnder {
-    /// Where in the picture it is.
-    pub(crate) part: vk::Rect2D,
-    /// The pixel of the image at which the part begins.
-    pub(crate) first: [i32; 2],
-    /// What is sampled, and its layout, where the depth is not copied.
+pub(crate) struct HostDepth {
+    pub(crate) under: DepthUnder,
+    /// The view and its layout where the depth is sampled; the view is null where it is copied.
     pub(crate) sampled: (vk::ImageView, vk::ImageLayout),
 }
 
@@ -96,7 +93,7 @@ pub(crate) struct EyeResources<'a> {
     pub(crate) cut: CutResources<'a>,
     pub(crate) buffers: &'a Buffers<EyePlan>,
     /// The host's depth, for tiles that it hides.
-    pub(crate) depth: Option<DepthUnder>,
+    pub(crate) depth: Option<HostDepth>,
     /// Where the layers have the camera and where they had it in the frame before, for motion.
     pub(crate) sights: [Option<&'a Sight>; 2],
 }
@@ -126,7 +123,7 @@ impl Resources<EyeName> for EyeResources<'_> {
         self.cut.pipelines
     }
 
-    fn depth(&self) -> Option<&DepthUnder> {
+    fn depth(&self) -> Option<&HostDepth> {
         self.depth.as_ref()
     }
 }

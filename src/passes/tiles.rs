@@ -125,7 +125,7 @@ fn record(recording: &mut Recording<'_, '_, EyePlan>) {
     let [depth_offset, depth_scale] = plan.occluders.map_or([0.0; 2], |o| o.map.factors());
     let under = recording
         .depth()
-        .map(|depth| depth.part)
+        .map(|depth| depth.under.part)
         .unwrap_or_default();
     let (at, size) = (under.offset, under.extent);
     let params = tiles::Params {

@@ -7,7 +7,7 @@ use ash::vk;
 use super::frame::{FrameCut, FrameState};
 use super::{ConfiguredFrame, MotionDesc, PreparedFrame, Renderer, out_of_order};
 use crate::passes::{
-    self, CutResources, DepthUnder, EyeResources, Part, PreviousFrame, SceneBuffers, Work,
+    self, CutResources, EyeResources, HostDepth, Part, PreviousFrame, SceneBuffers, Work,
     composite, motion, tiles,
 };
 use rara_base::error::Result;
@@ -19,13 +19,14 @@ impl Renderer {
     /// The picture is the same as that of quads, which test each sample against the attachment itself. Tiles of such a frame
     /// are computed anew even where [`RendererDesc::reuse`](crate::RendererDesc::reuse) is set.
     ///
-    /// The part of the depth image under the viewport is copied, at `COPY` by `TRANSFER_READ`. The host's barrier before makes
-    /// its depths visible to the copy, and its barrier after waits for the copy before the image changes layout or contents.
+    /// The part of the depth image under the viewport is copied, at `COPY` by `TRANSFER_READ`, or with
+    /// [`DepthDesc::sampled`](crate::DepthDesc::sampled) sampled, at `COMPUTE_SHADER` by `SHADER_SAMPLED_READ`. The host's barrier
+    /// before makes its depths visible to that, and its barrier after waits for it before the image changes layout or contents.
     ///
     /// # Safety
     /// `cmd` is in the recording state, outside a rendering scope, and will be submitted to the device's queue, or to one of
     /// [`RendererDesc::compute_family`](crate::RendererDesc::compute_family) where that is set, or never. `scene` is the one given to [`configure`](Self::configure)
-    /// and lives until the commands have executed. `depth` is as its description says, visible to the copy, and lives as
+    /// and lives until the commands have executed. `depth` is as its description says, visible to what reads it, and lives as
     /// long. The host has waited for the frames that [`Renderer`] says.
     ///
     /// # Errors
@@ -94,15 +95,14 @@ impl Renderer {
             let mut recorder =
                 unsafe { Recorder::begin(&self.device, cmd, draws, slot.timer.as_mut()) };
             let depth = depth.zip(plan.occluders).map(|(depth, occluders)| {
-                let (first, part) = depth.under(occluders.size);
+                let under = depth.under(occluders.size);
                 if !occluders.sampled {
                     let to = tiles::occluders(&state.buffers);
                     // SAFETY: the caller promises the image, its layout and that its depths are visible.
-                    unsafe { recorder.copy_depth(depth, to, occluders.size) };
+                    unsafe { recorder.copy_depth(depth, to, &under) };
                 }
-                DepthUnder {
-                    part,
-                    first,
+                HostDepth {
+                    under,
                     sampled: (depth.view, depth.layout),
                 }
             });

@@ -293,7 +293,7 @@ fn a_device_without_addresses_draws_the_same_bytes() {
     assert!(usual.iter().flatten().all(opaque));
 }
 
-/// What a host says of its instance cannot be asked of Vulkan, but what it then lacks can.
+/// Vulkan does not say for which version an instance was made; the functions and answers that it lacks do.
 #[test]
 fn an_instance_made_for_less_than_is_said_is_told_so() {
     for made_for in [

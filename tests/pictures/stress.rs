@@ -8,7 +8,7 @@ use rara_lab::stress::{self, Regime, RegimeRow};
 fn check(regimes: Vec<Regime>) {
     let mut headless = common::headless();
     let run = |regime: &Regime| -> RegimeRow {
-        // Of five cases the first and the last, which is the crowd, and one between them; on slow drivers those two alone.
+        // The first, the third and the last of five cases run, which is the crowd; on slow drivers the first and the last.
         let every = if common::scale() < 1.0 { 4 } else { 2 };
         let row = stress::run(&mut headless, regime, every);
         row.unwrap_or_else(|error| panic!("{}: {error}", regime.name))

@@ -162,11 +162,16 @@ impl Canvas {
         self.render_pass
     }
 
+    /// The depths of one sample.
+    fn read_depth(&self) -> &Image {
+        let depth = self.resolved_depth.as_ref().or(self.depth.as_ref());
+        depth.expect("a depth buffer")
+    }
+
     /// The depth buffer as `prepare` takes it, for a viewport that begins at (x, y).
     pub fn depth_image(&self, x: i32, y: i32) -> DepthImage {
-        let depth = self.resolved_depth.as_ref().or(self.depth.as_ref());
         DepthImage {
-            image: depth.expect("a depth buffer").raw,
+            image: self.read_depth().raw,
             view: vk::ImageView::null(),
             layout: COPIED,
             extent: self.desc.extent,
@@ -177,10 +182,9 @@ impl Canvas {
 
     /// The same as it is sampled, by what [`sampling`](Self::sampling) records.
     pub fn depth_view(&self, x: i32, y: i32) -> DepthImage {
-        let depth = self.resolved_depth.as_ref().or(self.depth.as_ref());
         DepthImage {
             image: vk::Image::null(),
-            view: depth.expect("a depth buffer").view,
+            view: self.read_depth().view,
             layout: SAMPLED,
             ..self.depth_image(x, y)
         }
@@ -188,8 +192,7 @@ impl Canvas {
 
     /// Lets what is recorded before a scope sample the depth buffer.
     pub fn sampling(&self, cmd: vk::CommandBuffer, record: impl FnOnce()) {
-        let depth = self.resolved_depth.as_ref().or(self.depth.as_ref());
-        let depth = depth.expect("a depth buffer");
+        let depth = self.read_depth();
         // SAFETY: called from within `draw`, whose command buffer is recording outside a scope.
         unsafe { self.turn(cmd, depth, COPIED, SAMPLED) };
         record();

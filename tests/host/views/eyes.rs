@@ -233,7 +233,7 @@ fn each_eye_draws_into_its_view_of_one_scope() {
             let drawn = draw(&layered, &eyes);
             assert!(drawn == expected, "render pass: {render_pass}");
         }
-        // What quads would draw goes into every view.
+        // Quads would be drawn into every view.
         let renderer = Renderer::new(device, desc().target(Target::DYNAMIC.in_view(0b11, 0)));
         let mut renderer = renderer.expect("a renderer");
         let refused = renderer.configure(&scene, &cameras[0], &clip, &raster(Raster::Quad));

@@ -4,7 +4,7 @@ use rara::ash::vk;
 use rara::gpu::{Bindings, WriteOnly};
 use rara::{
     Camera, Clip, Cut, DepthDesc, DepthMap, Gaussians, PreparedFrame, Renderer, RendererDesc,
-    Result, SceneBuffers, Settings, ShFormat, Staging,
+    SceneBuffers, Settings, ShFormat, Staging,
 };
 use wgpu::hal::api::Vulkan;
 
@@ -35,7 +35,7 @@ pub(crate) struct Eye<'a> {
 pub(crate) struct Splats {
     /// One for each eye.
     renderers: Vec<Renderer>,
-    /// What the clip keeps, which is found once for all eyes.
+    /// The Gaussians that the clip keeps are found once for all eyes.
     cut: Cut,
     scene: SceneBuffers,
     /// The submissions of the last frames, the oldest first.
@@ -62,7 +62,7 @@ impl Splats {
         format: wgpu::TextureFormat,
         view: &View,
         eyes: usize,
-    ) -> std::result::Result<Self, Failure> {
+    ) -> Result<Self, Failure> {
         let depth = DepthDesc::new(vk::Format::D32_SFLOAT, view.depth).readable(true);
         let desc = RendererDesc::new(vulkan(format)?)
             .depth(Some(depth))
@@ -91,7 +91,7 @@ impl Splats {
         eyes: &[Eye<'_>],
         view: &View,
         careful: bool,
-    ) -> std::result::Result<(), Failure> {
+    ) -> Result<(), Failure> {
         if self.in_flight.len() == FRAMES as usize {
             host.wait(Some(self.in_flight.remove(0)))?;
         }
@@ -114,16 +114,19 @@ impl Splats {
         let drawn = encoder.finish();
 
         // 2. rara's stages, outside any scope.
-        let (prepared, stages) = host.raw("splats' stages", |cmd| -> Result<Vec<PreparedFrame>> {
-            // SAFETY: `cmd` is recording outside any scope, and all is kept until the frame has executed.
-            unsafe { cut.prepare(cmd) }?;
-            let of_eyes = renderers.iter_mut().zip(eyes).zip(frames);
-            let prepared = of_eyes.map(|((renderer, eye), frame)| {
-                // SAFETY: as above; wgpu has made the depths visible to copies.
-                unsafe { renderer.prepare(cmd, scene, Some(&eye.target.depth_image()), frame) }
-            });
-            prepared.collect()
-        });
+        let (prepared, stages) = host.raw(
+            "splats' stages",
+            |cmd| -> rara::Result<Vec<PreparedFrame>> {
+                // SAFETY: `cmd` is recording outside any scope, and all is kept until the frame has executed.
+                unsafe { cut.prepare(cmd) }?;
+                let of_eyes = renderers.iter_mut().zip(eyes).zip(frames);
+                let prepared = of_eyes.map(|((renderer, eye), frame)| {
+                    // SAFETY: as above; wgpu has made the depths visible to copies.
+                    unsafe { renderer.prepare(cmd, scene, Some(&eye.target.depth_image()), frame) }
+                });
+                prepared.collect()
+            },
+        );
         let prepared = prepared?;
 
         // 3. wgpu takes the depths back.
@@ -145,7 +148,7 @@ impl Splats {
                     drawn
                 }
             });
-            drawn.collect::<Result<()>>()
+            drawn.collect::<rara::Result<()>>()
         });
         shown?;
 
@@ -166,7 +169,7 @@ impl Splats {
 }
 
 /// Uploads a scene through a buffer that wgpu maps for writing alone, without waiting for anything but the end.
-fn upload(host: &Host, scene: &Gaussians) -> std::result::Result<SceneBuffers, Failure> {
+fn upload(host: &Host, scene: &Gaussians) -> Result<SceneBuffers, Failure> {
     let size = SceneBuffers::staging_bytes(scene, ShFormat::Float);
     let buffer = host.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("splats' staging"),
@@ -216,7 +219,7 @@ fn transition<'a>(
 }
 
 /// The Vulkan format of a target's.
-fn vulkan(format: wgpu::TextureFormat) -> std::result::Result<vk::Format, Failure> {
+fn vulkan(format: wgpu::TextureFormat) -> Result<vk::Format, Failure> {
     match format {
         wgpu::TextureFormat::Rgba8Unorm => Ok(vk::Format::R8G8B8A8_UNORM),
         wgpu::TextureFormat::Rgba16Float => Ok(vk::Format::R16G16B16A16_SFLOAT),

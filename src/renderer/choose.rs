@@ -52,7 +52,7 @@ pub(super) fn raster(
         _ if targets.beside && !can_tile => {
             return Err(Error::Invalid(
                 "only tiles can write depths (DepthDesc::write_alpha), hide parts of splats (DepthDesc::soft), find motion \
-                 (RendererDesc::motion) and draw into one of several views (Target::in_view); use Raster::Auto or Raster::Tiles"
+                 (RendererDesc::motion) and draw into one view of a view mask; use Raster::Auto or Raster::Tiles"
                     .into(),
             ));
         }

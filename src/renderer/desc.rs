@@ -298,14 +298,13 @@ impl RendererDesc {
     fn check_view(&self, target: Target) -> Result<()> {
         if !target.has_its_view() {
             return Err(Error::Invalid(
-                "a target of RendererDesc is in a view that its view mask lacks (Target::in_view)"
-                    .into(),
+                "a target of RendererDesc is in a view that its view mask lacks".into(),
             ));
         }
         match target.view() {
             Some(_) if self.hides_from_tiles() => Err(Error::Invalid(
-                "a target of RendererDesc has a view mask (Target::in_view) and DepthDesc::readable is not set: tiles draw into one \
-                 view of several, and need the host's depth before its scope"
+                "a target of RendererDesc has a view mask and DepthDesc::readable is not set: tiles draw into one view of \
+                 several, and need the host's depth before its scope"
                     .into(),
             )),
             _ => Ok(()),

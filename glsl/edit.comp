@@ -13,6 +13,8 @@ struct Params {
     float spanning_opacity; // from which a splat spans a pixel
     float least_opacity; // what making up for the low-pass has to leave
     float low_pass; // px^2, of antialiased Gaussians; 0 of others
+    uint edit; // the number of an edit that keeps what it moves; 0 of others
+    uint shown; // the last such edit that a frame has shown
 };
 #define PARAMS Params
 #include "buffers.glsl"
@@ -25,6 +27,7 @@ BUFFER(readonly, 0, PlainGaussian, plain)
 BUFFER(, 1, Gaussian, gaussians)
 BUFFER(, 2, uint, sh)
 BUFFER(writeonly, 3, Block, blocks)
+BUFFER(, 4, Gaussian, earlier) // in place of the opacity the bits of the edit's number, 0 before any
 #include "nearest_half.glsl"
 
 const float FLOAT_MAX = 3.402823466e38;
@@ -102,6 +105,14 @@ Gaussian with_parts(Gaussian gaussian, PlainGaussian given) {
         gaussian.rotation = given.rotation;
     }
     return gaussian;
+}
+
+// Keeps what a Gaussian was, if no edit has since the last frame.
+void keep_shape(uint place, Gaussian gaussian) {
+    if (push.params.edit != 0u && floatBitsToUint(earlier.at[place].position_opacity.w) <= push.params.shown) {
+        gaussian.position_opacity.w = uintBitsToFloat(push.params.edit);
+        earlier.at[place] = gaussian;
+    }
 }
 
 // Splat::spanning_scale in single precision, in units of the middle deviation, so that nothing overflows.
@@ -203,6 +214,7 @@ void main() {
     }
     if (is_edited) {
         PlainGaussian given = plain.at[index];
+        keep_shape(place, gaussian);
         gaussian = with_parts(gaussian, given);
         gaussians.at[place] = gaussian;
         pack_colour(place, given.colour.xyz);

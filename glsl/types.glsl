@@ -113,6 +113,12 @@ struct LayerMotion {
     vec4 right; // of x
     vec4 down; // of y
     vec4 depth; // of z; of an orthographic camera zero
+    // What a way in the layer's axes and units adds to the same; w unused.
+    vec4 way_right; // to x
+    vec4 way_down; // to y
+    vec4 way_depth; // to z; of an orthographic camera zero
+    uint since; // only edits of a higher number have moved its Gaussians; NO_EDITS: none have
+    uint pad[3]; // unused
 };
 
 // The Gaussians of a layer, and how visible they are.
@@ -284,6 +290,8 @@ const uint EDIT_ROTATIONS = 4u;
 const uint EDIT_OPACITIES = 8u;
 const uint EDIT_COLOURS = 16u;
 const uint EDIT_FLAT = 32u;
+// In place of the number of an edit.
+const uint NO_EDITS = 0xffffffffu;
 const uint PHI_QUINTIC = 0u;
 const uint PHI_CUBIC = 1u;
 const uint PHI_LOGISTIC = 2u;

@@ -57,8 +57,10 @@ pub struct RaraLayerEdit {
     pub flat: vk::Bool32,
     /// True if the layer gets the box below; false, the default, if all centres stay in the box that it has.
     pub has_bounds: vk::Bool32,
-    /// Unused.
-    pub pad: u32,
+    /// True if the Gaussians move to where the edit puts them, so that the next frame's motion (`motion_format` of
+    /// RaraRendererDesc) shows how far; false, the default, if others take their place, which count as at rest. The first such
+    /// edit of a scene takes 48 bytes of device memory for each of its Gaussians.
+    pub moves: vk::Bool32,
     /// The least coordinates of the centres of all Gaussians of the layer after the edit, in its units and relative to its
     /// origin. Gaussians with a centre outside of the box may be drawn in a wrong order, and a box that is much too large sorts
     /// depths coarsely.
@@ -83,6 +85,7 @@ impl From<RaraLayerEdit> for LayerEdit {
             .opacities(edit.opacities != 0)
             .colours(edit.colours != 0)
             .flat(edit.flat != 0)
+            .moves(edit.moves != 0)
             .bounds((edit.has_bounds != 0).then_some(bounds))
     }
 }

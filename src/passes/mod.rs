@@ -59,7 +59,7 @@ pub(crate) use edit::{CheckedEdit, needs as edit_needs};
 pub(crate) use eye_plan::{EyeFacts, EyePlan};
 pub(crate) use frame::{DRAW, record, record_cut};
 pub use lines::{Lines, PictureLine};
-pub(crate) use motion::Sight;
+pub(crate) use motion::{EditedShapes, Sight};
 pub(crate) use occluders::Occluders;
 pub(crate) use owner::Owner;
 pub(crate) use pipelines::{PipelineKey, Pipelines};

@@ -8,6 +8,7 @@ use ash::vk;
 use bytemuck::cast_slice;
 
 use crate::passes::cut_plan::SceneFacts;
+use crate::passes::motion::EarlierShapes;
 use crate::passes::pair_estimate::PairSample;
 use crate::passes::scene_layer::{
     PackedLayer, SceneLayer, join_sets, layer_index, sizes, write_in_order, written_bytes,
@@ -31,10 +32,12 @@ pub struct SceneBuffers {
     /// No other contents of a scene of this process have it.
     pub(crate) id: u64,
     /// The number of what the memory holds, which clones share.
-    held: Arc<AtomicU64>,
+    pub(super) held: Arc<AtomicU64>,
     pub(crate) gaussians: Buffer,
     pub(crate) sh: Buffer,
     pub(crate) blocks: Buffer,
+    /// What edits have moved; `None` before the first one that does.
+    pub(crate) earlier: Option<EarlierShapes>,
     /// True when the Gaussians lie in another order than that of their numbers.
     pub(crate) reordered: bool,
     /// The Gaussians that the layers have room for: their numbers are below it.
@@ -201,12 +204,30 @@ impl SceneBuffers {
     fn hold_replaced(
         &mut self,
         index: usize,
-        (layer, sample): (SceneLayer, PairSample),
+        (mut layer, sample): (SceneLayer, PairSample),
         packed: &PackedLayer<'_>,
     ) {
+        layer.replaced_after = self.last_edit();
         self.reordered |= !packed.numbers().is_sorted();
         self.sample = Arc::new(sample);
         self.hold(index, layer);
+    }
+
+    /// The number of the last edit that has moved any; 0 before.
+    pub(super) fn last_edit(&self) -> u32 {
+        self.earlier
+            .as_ref()
+            .map_or(0, |earlier| earlier.numbers()[0])
+    }
+
+    /// What it keeps of Gaussians that edits move, with one more edit.
+    pub(super) fn moved_again(&self) -> Result<EarlierShapes> {
+        match &self.earlier {
+            Some(earlier) => Ok(earlier.edited()),
+            None => {
+                Ok(EarlierShapes::new(self.gaussians.device(), self.gaussians.size())?.edited())
+            }
+        }
     }
 
     /// Notes that the memory will hold other contents of a layer.
@@ -412,6 +433,7 @@ impl SceneBuffers {
             gaussians: gpu_only(device, "gaussians", sizes[0])?,
             sh: gpu_only(device, "sh", sizes[1])?,
             blocks: gpu_only(device, "blocks", sizes[2])?,
+            earlier: None,
             reordered: !packed.iter().flat_map(PackedLayer::numbers).is_sorted(),
             count,
             sh_degree,
@@ -461,7 +483,11 @@ impl SceneBuffers {
 
     /// Bytes of device memory that the scene takes.
     pub fn bytes(&self) -> u64 {
-        self.gaussians.size() + self.sh.size() + self.blocks.size()
+        let earlier = self
+            .earlier
+            .as_ref()
+            .map_or(0, |earlier| earlier.buffer().size());
+        self.gaussians.size() + self.sh.size() + self.blocks.size() + earlier
     }
 
     /// Replaces the bounds by ones that settle nothing, so that each Gaussian is looked at for itself.

@@ -42,6 +42,8 @@ pub struct SceneLayer {
     pub(super) training: Training,
     pub(super) state: LayerState,
     pub(super) clip: Option<Clip>,
+    /// The number of the last edit that had moved Gaussians of the scene when others took the place of the layer's.
+    pub(super) replaced_after: u32,
 }
 
 impl SceneLayer {
@@ -60,6 +62,7 @@ impl SceneLayer {
             training: layer.gaussians().training(),
             state: layer.state(),
             clip: layer.clip().cloned(),
+            replaced_after: 0,
         }
     }
 

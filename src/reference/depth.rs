@@ -229,6 +229,8 @@ pub struct SplatPart {
     pub depth: f64,
     /// The number of its layer.
     pub layer: usize,
+    /// The number of its Gaussian in the layer.
+    pub gaussian: usize,
 }
 
 /// A picture whose pixels a function has made of the splats' parts in them, front to back.
@@ -278,6 +280,7 @@ fn blended<T: Real, P: Clone + Default>(
                         coverage: *coverage,
                         depth: depth.mean(dx, dy).wide(),
                         layer,
+                        gaussian: index,
                     };
                     blend(pixel, part);
                 }

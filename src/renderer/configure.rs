@@ -11,8 +11,8 @@ use super::frames::Decision;
 use super::request::{FrameRequest, Kept};
 use super::{ConfiguredFrame, Renderer, out_of_order};
 use crate::passes::{
-    CutPlan, EyeFacts, EyePlan, Occluders, PreviousFrame, SceneBuffers, Sight, Sizes, SplatColours,
-    Targets, TilePixels, TileWork, Work,
+    CutPlan, EditedShapes, EyeFacts, EyePlan, Occluders, PreviousFrame, SceneBuffers, Sight, Sizes,
+    SplatColours, Targets, TilePixels, TileWork, Work,
 };
 use rara_base::error::{Error, Result};
 use rara_base::limits;
@@ -68,8 +68,13 @@ impl Renderer {
         let bindings = self.bindings_of(largest.max(request.scene.largest()))?;
         let needs = |need: &mut dyn FnMut(_)| plan.pipelines(targets, need);
         decision.is_first_use = self.pipelines.ensure(&self.device, bindings, &needs)?;
+        let edited = self
+            .desc
+            .motion
+            .and_then(|_| EditedShapes::new(request.scene));
         let frame = ConfiguredFrame {
             state: FrameState {
+                edited,
                 decision,
                 cut,
                 buffers,
@@ -168,7 +173,7 @@ impl Renderer {
             targets,
             depth_map,
             unit: self.placement.scale(),
-            sight: self.desc.motion.map(|_| Sight::new(facts.layers, camera)),
+            sight: self.desc.motion.map(|_| Sight::new(scene, camera)),
             is_first_use: false,
         })
     }

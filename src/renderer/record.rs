@@ -121,6 +121,9 @@ impl Renderer {
             });
             self.keep(scene, &state);
         }
+        if let (Some(_), Some(earlier)) = (&state.decision.sight, &scene.earlier) {
+            earlier.show();
+        }
         self.seen.clone_from(&state.decision.sight);
         Ok(PreparedFrame {
             number: self.frames.prepared(),
@@ -295,7 +298,7 @@ impl Renderer {
             return Ok(());
         };
         let pass = |drawer: &mut Drawer<'_>| {
-            let frame = (plan, buffers);
+            let frame = (plan, buffers, state.edited.as_ref());
             motion::record(
                 drawer,
                 &state.pipelines,

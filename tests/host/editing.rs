@@ -59,7 +59,7 @@ fn bent(gaussians: &Gaussians, amount: f32) -> Gaussians {
 }
 
 /// The numbers that an editor takes.
-fn plain(gaussians: &Gaussians) -> Vec<PlainGaussian> {
+pub(super) fn plain(gaussians: &Gaussians) -> Vec<PlainGaussian> {
     let of = |index: usize| {
         let [r, g, b] = [0, 1, 2].map(|channel| gaussians.sh_of(index)[channel]);
         let position = gaussians.positions()[index];
@@ -74,7 +74,7 @@ fn plain(gaussians: &Gaussians) -> Vec<PlainGaussian> {
 }
 
 /// A buffer of Gaussians of the host's.
-fn lent(device: &Device, plain: &[PlainGaussian]) -> Buffer {
+pub(super) fn lent(device: &Device, plain: &[PlainGaussian]) -> Buffer {
     let bytes = bytemuck::cast_slice(plain);
     let mut buffer = lend(device, bytes.len() as u64);
     buffer.mapped_mut().write(0, bytes);

@@ -1,14 +1,18 @@
 //! Temporal hosts get how far each pixel's splats have moved since the frame before, and the number of their layer.
 
+use std::borrow::Cow;
+
+use super::editing::{lent, plain};
 use crate::canvas::{Canvas, CanvasDesc, Frame, with_host};
 use crate::common;
 use rara::ash::vk;
-use rara::glam::{DMat3, DQuat, DVec3};
+use rara::glam::{DMat3, DQuat, DVec3, Quat, Vec3};
 use rara::gpu::{Bindings, Device};
 use rara::scene::{Kind, generate};
 use rara::{
-    Camera, Clip, ClipOp, DepthDesc, DepthMap, Gaussians, Layer, LayerState, Mode, MotionDesc,
-    Placement, Projection, Raster, Renderer, RendererDesc, Scene, SceneBuffers, Settings, ShFormat,
+    Bounds, Camera, Clip, ClipOp, DepthDesc, DepthMap, Gaussians, Layer, LayerEdit, LayerEditor,
+    LayerState, Mode, MotionDesc, Placement, Projection, Raster, Renderer, RendererDesc, Scene,
+    SceneBuffers, Settings, ShFormat,
 };
 use rara_reference::depth::{SplatPart, strongest};
 
@@ -18,11 +22,37 @@ const FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 const BEFORE: [f32; 4] = [7.0, 8.0, 9.0, 0.5];
 const LEAST: f32 = 0.25;
 
-/// What a frame shows: where the camera and the layers are.
+/// What a frame shows: where the camera and the layers are, and of which shape the second layer is.
 #[derive(Clone, Copy)]
 struct Moment {
     camera: Camera,
     placements: [Placement; 2],
+    bend: f32,
+}
+
+/// Gaussians that have been bent, turned and stretched.
+fn bent(gaussians: &Gaussians, amount: f32) -> Gaussians {
+    let mut bent = gaussians.clone();
+    for p in bent.positions_mut() {
+        p.x += amount * p.y * p.y;
+    }
+    for q in bent.rotations_mut() {
+        *q = (Quat::from_axis_angle(Vec3::new(0.0, 0.6, 0.8), amount) * *q).normalize();
+    }
+    for s in bent.scales_mut() {
+        *s *= Vec3::new(1.0 + amount, 1.0 - amount, 1.0);
+    }
+    bent
+}
+
+/// Where a Gaussian has a place that another one has: as many deviations along each axis from the centre.
+fn carried([from, to]: [&Gaussians; 2], index: usize, place: DVec3) -> DVec3 {
+    let [was, is] = [from, to].map(|gaussians| {
+        let turn = DMat3::from_quat(gaussians.rotations()[index].as_dquat().normalize());
+        let axes = turn * DMat3::from_diagonal(gaussians.scales()[index].as_dvec3());
+        (gaussians.positions()[index].as_dvec3(), axes)
+    });
+    is.0 + is.1 * (was.1.inverse() * (place - was.0))
 }
 
 struct World {
@@ -64,18 +94,35 @@ impl World {
             Moment {
                 camera: seen,
                 placements: [Placement::IDENTITY, had],
+                bend: 0.0,
             },
             Moment {
                 camera: now,
                 placements: [Placement::IDENTITY, has],
+                bend: 0.0,
             },
         ]
     }
 
+    /// The Gaussians of the layers at a moment.
+    fn shapes(&self, moment: &Moment) -> [Cow<'_, Gaussians>; 2] {
+        let [first, second] = self.halves.each_ref();
+        let second = match moment.bend {
+            0.0 => Cow::Borrowed(second),
+            amount => Cow::Owned(bent(second, amount)),
+        };
+        [Cow::Borrowed(first), second]
+    }
+
     fn scene(&self, moment: &Moment) -> Scene<'_> {
-        let layers = self.halves.iter().zip(moment.placements).enumerate();
+        let shapes = self.shapes(moment).into_iter();
+        let layers = shapes.zip(moment.placements).enumerate();
         let layers = layers.map(|(number, (half, placement))| {
-            Layer::new(number.to_string(), half).with(LayerState::default().placement(placement))
+            let layer = match half {
+                Cow::Borrowed(half) => Layer::new(number.to_string(), half),
+                Cow::Owned(half) => Layer::owned(number.to_string(), half),
+            };
+            layer.with(LayerState::default().placement(placement))
         });
         layers.collect()
     }
@@ -84,17 +131,26 @@ impl World {
     fn truth(&self, [before, now]: &[Moment; 2]) -> Vec<([f64; 2], SplatPart)> {
         let (camera, scene) = (&now.camera, self.scene(now));
         let seen = strongest::<f64>(scene, camera, &self.clip, &self.settings);
+        let [had, have] = [before, now].map(|moment| self.shapes(moment));
         let ways = seen.into_iter().enumerate().map(|(at, seen)| {
             let at = at as u32;
             let pixel = [at % SIZE.0, at / SIZE.0].map(|side| f64::from(side) + 0.5);
             let world = point(camera, pixel, seen.depth);
             let own = now.placements[seen.layer].to_scene(world);
+            let shapes = [&*have[seen.layer], &*had[seen.layer]];
+            let own = carried(shapes, seen.gaussian, own);
             let was = before.placements[seen.layer].to_world(own);
             let [x, y] = seen_at(&before.camera, was);
             ([x - pixel[0], y - pixel[1]], seen)
         });
         ways.collect()
     }
+}
+
+/// True where no pixel has moved.
+fn is_at_rest(pixels: &[[f32; 4]]) -> bool {
+    let mut of_splats = pixels.iter().filter(|p| **p != BEFORE);
+    of_splats.all(|p| p[..2] == [0.0; 2])
 }
 
 /// The point that a camera sees in a pixel at a depth.
@@ -141,7 +197,13 @@ fn draw(
         call: Renderer::draw_motion,
         ..Frame::new(SIZE)
     };
+    let mut bend = moments[0].bend;
     let drawn = moments.iter().map(|moment| {
+        if moment.bend != bend {
+            let [_, shape] = world.shapes(moment);
+            edit(device, renderer, &mut scene, (1, &shape), true);
+            bend = moment.bend;
+        }
         for (number, placement) in moment.placements.into_iter().enumerate() {
             let state = LayerState::default().placement(placement);
             scene.set_layer_state(number, state).expect("a layer");
@@ -152,8 +214,33 @@ fn draw(
     drawn.collect()
 }
 
+/// Edits the Gaussians of a layer of a scene, which move there or not.
+fn edit(
+    device: &Device,
+    renderer: &Renderer,
+    scene: &mut SceneBuffers,
+    (layer, shape): (usize, &Gaussians),
+    moves: bool,
+) {
+    let count = shape.len() as u32;
+    let mut editor = LayerEditor::new(renderer, scene, count).expect("an editor");
+    let source = lent(device, &plain(shape));
+    let edit = LayerEdit::of(0..count).positions(true).rotations(true);
+    let edit = edit.scales(true).bounds(Some(Bounds::of(shape)));
+    let edited = device.submit_and_wait(|cmd| {
+        let all = [vk::BufferCopy::default().size(source.size())];
+        // SAFETY: `cmd` is recording outside a scope, and all lives until it has executed.
+        unsafe {
+            let raw = device.raw();
+            raw.cmd_copy_buffer(cmd, source.handle(), editor.buffer(), &all);
+            editor.record(cmd, scene, layer, &edit.moves(moves))
+        }
+    });
+    edited.expect("edits");
+}
+
 #[test]
-fn cameras_and_layers_move_pixels_as_the_reference_says() {
+fn cameras_layers_and_edits_move_pixels_as_the_reference_says() {
     with_host(true, |host, device| {
         let mut clear = CanvasDesc::new(SIZE, FORMAT);
         clear.clear = BEFORE;
@@ -165,14 +252,14 @@ fn cameras_and_layers_move_pixels_as_the_reference_says() {
             (Mode::Rara, Projection::Perspective, Bindings::Bound),
         ] {
             let world = World::new(mode);
-            let moments = world.moments(projection);
+            let mut moments = world.moments(projection);
+            if mode != Mode::Rara {
+                moments[1].bend = 0.1;
+            }
             let mut renderer = first.sharing(desc(bindings)).expect("a renderer");
             let [before, now] = moments;
             let drawn = draw(device, &canvas, &world, &mut renderer, &[before, now, now]);
-            for still in [&drawn[0], &drawn[2]] {
-                let moved = still.iter().filter(|p| **p != BEFORE && p[..2] != [0.0; 2]);
-                assert_eq!(moved.count(), 0, "nothing has moved");
-            }
+            assert!(is_at_rest(&drawn[0]) && is_at_rest(&drawn[2]));
             let (mut errors, mut ways, mut layers) = (Vec::new(), 0.0_f64, [0; 2]);
             for (ours, (way, seen)) in drawn[1].iter().zip(world.truth(&moments)) {
                 let is_near = (seen.coverage - f64::from(LEAST)).abs() < 1e-4;
@@ -204,6 +291,76 @@ fn cameras_and_layers_move_pixels_as_the_reference_says() {
                 "{what}"
             );
         }
+    });
+}
+
+/// What an edit moves is seen by all frames until the next one: its way begins where the frame before has shown it.
+#[test]
+fn edits_between_two_frames_are_one_way() {
+    with_host(true, |host, device| {
+        let canvas = Canvas::new(&host.lend(), device, CanvasDesc::new(SIZE, FORMAT));
+        let first = Renderer::new(device, desc(Bindings::Mixed)).expect("a renderer");
+        let world = World::new(Mode::Exact);
+        let [moment, _] = world.moments(Projection::Perspective);
+        let frame = Frame {
+            call: Renderer::draw_motion,
+            ..Frame::new(SIZE)
+        };
+        let shape = |amount| bent(&world.halves[1], amount);
+        // Draws a frame, edits and replaces, and draws one by each of so many renderers.
+        let moved = |eyes: usize, change: &dyn Fn(&Renderer, &mut SceneBuffers)| {
+            let scene = SceneBuffers::upload(device, world.scene(&moment), ShFormat::Float);
+            let mut scene = scene.expect("uploads");
+            let sharing = || first.sharing(desc(Bindings::Mixed)).expect("a renderer");
+            let mut renderers: Vec<_> = (0..eyes).map(|_| sharing()).collect();
+            let draw = |renderer: &mut Renderer, scene: &SceneBuffers| {
+                let configured =
+                    renderer.configure(scene, &moment.camera, &world.clip, &world.settings);
+                canvas.draw_frame(renderer, scene, configured, &frame)
+            };
+            for renderer in &mut renderers {
+                draw(renderer, &scene);
+            }
+            change(&renderers[0], &mut scene);
+            let mut each =
+                |scene: &_| -> Vec<_> { renderers.iter_mut().map(|r| draw(r, scene)).collect() };
+            let [now, later] = [each(&scene), each(&scene)];
+            assert!(is_at_rest(&later[0]), "nothing has moved since");
+            assert!(now.iter().all(|seen| *seen == now[0]), "eyes see the same");
+            now[0].clone()
+        };
+        let is_of = |layer: f32, pixels: &[[f32; 4]]| {
+            let moved = pixels
+                .iter()
+                .filter(|p| p[2] == layer && p[..2] != [0.0; 2]);
+            moved.count()
+        };
+        let once = moved(1, &|renderer, scene| {
+            edit(device, renderer, scene, (1, &shape(0.1)), true);
+        });
+        assert!(is_of(1.0, &once) > 500 && is_of(0.0, &once) == 0);
+        let twice = moved(2, &|renderer, scene| {
+            edit(device, renderer, scene, (1, &shape(-0.2)), true);
+            edit(device, renderer, scene, (1, &shape(0.1)), true);
+        });
+        assert!(once == twice, "two edits are one way");
+        let others = moved(1, &|renderer, scene| {
+            edit(device, renderer, scene, (1, &shape(0.1)), false);
+        });
+        assert!(is_at_rest(&others), "others took their place");
+        let replaced = moved(1, &|renderer, scene| {
+            edit(device, renderer, scene, (1, &shape(-0.2)), true);
+            edit(
+                device,
+                renderer,
+                scene,
+                (0, &bent(&world.halves[0], 0.1)),
+                true,
+            );
+            let replaced = scene.replace_layer(1, &shape(0.1));
+            replaced.expect("replaces");
+        });
+        assert!(is_of(0.0, &replaced) > 500 && is_of(1.0, &replaced) == 0);
     });
 }
 

@@ -106,6 +106,14 @@ struct LayerView {
     uint pad[3]; // unused
 };
 
+// The region of a layer that is kept.
+struct LayerRegion {
+    uint op; // OP_*: how its surfaces combine
+    uint first_surface; // its first one
+    uint surface_count; // how many it has
+    uint combined; // 1: splats are weighed as combinations of surfaces that may bend
+};
+
 // How a layer has moved since the frame before, as pixels see it. A point that is seen in pixel x, y at depth z was seen where the
 // rows of a map have taken (x z, y z, z, 1), px times depth and depth; of an orthographic camera (x, y, z, 1), px and 1. These are the
 // rows less those that change nothing, so that small ways keep their digits.
@@ -117,8 +125,11 @@ struct LayerMotion {
     vec4 way_right; // to x
     vec4 way_down; // to y
     vec4 way_depth; // to z; of an orthographic camera zero
+    LayerRegion region; // what was kept of it
+    uint clip_has_moved; // 1: that is not what is kept now
+    uint first_surface; // what is to be added to the numbers of the surfaces of the region that is kept now
+    uint was_shown; // 0: there was no frame before, or nothing of the layer in it
     uint since; // only edits of a higher number have moved its Gaussians; NO_EDITS: none have
-    uint pad[3]; // unused
 };
 
 // The Gaussians of a layer, and how visible they are.
@@ -130,14 +141,6 @@ struct LayerContent {
     uint antialiased; // 1: its splats' opacities make up for the low-pass
     float low_pass; // what is added to its footprints' covariances, px^2
     uint pad[2]; // unused
-};
-
-// The region of a layer that is kept.
-struct LayerRegion {
-    uint op; // OP_*: how its surfaces combine
-    uint first_surface; // its first one
-    uint surface_count; // how many it has
-    uint combined; // 1: splats are weighed as combinations of surfaces that may bend
 };
 
 // A layer of the scene in a cut.

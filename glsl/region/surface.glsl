@@ -5,7 +5,11 @@
 #include "region/sides.glsl"
 #include "layer.glsl"
 
-BUFFER(readonly, 1, SurfaceData, surfaces)
+// An includer may bind them elsewhere.
+#ifndef SURFACES_BINDING
+#define SURFACES_BINDING 1
+#endif
+BUFFER(readonly, SURFACES_BINDING, SurfaceData, surfaces)
 
 // True when a region has parts or a surface that bends: without, there is no code for either.
 layout(constant_id = 8) const bool COMBINED = false;

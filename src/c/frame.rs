@@ -198,7 +198,8 @@ pub unsafe extern "C" fn rara_renderer_draw_depth(
 
 /// Records a frame's motion inside a rendering scope of its own, with a colour attachment of motion_format and, if there is one,
 /// the same depth attachment. Red and green are where what a pixel shows was in the frame that this renderer has prepared
-/// before, less where it is, px to the right and down; blue is the number of its layer, and alpha is 1. A pixel shows the splat that
+/// before, less where it is, px to the right and down; blue is the number of its layer, and alpha is 1, or 0 where that frame could
+/// not show it: there was none, the clip or the layer's state hid it, or it was behind the eye. A pixel shows the splat that
 /// adds most to its alpha. Pixels whose alpha is below motion_least_alpha keep what the host has drawn. Motion is 0 where
 /// there is no frame before. `x` and `y` are as for rara_renderer_draw.
 ///

@@ -4,7 +4,7 @@
 use std::ops::Range;
 
 use crate::passes::block_order;
-use crate::passes::motion::EarlierShapes;
+use crate::passes::earlier_shapes::EarlierShapes;
 use crate::passes::pipelines::{Pipeline, PipelineKey, Pipelines};
 use crate::passes::scene_buffers::SceneBuffers;
 use crate::passes::scene_layer::{SceneLayer, bytes_each};

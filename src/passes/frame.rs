@@ -10,6 +10,7 @@ use crate::passes::buffers::Buffers;
 use crate::passes::composite::Part;
 use crate::passes::cut_plan::CutPlan;
 use crate::passes::eye_plan::EyePlan;
+use crate::passes::motion::Sight;
 use crate::passes::owner::Owner;
 use crate::passes::pipelines::PipelineKey;
 use crate::passes::recording::Recording;
@@ -138,13 +139,27 @@ fn write_frame(plan: &EyePlan, recorder: &mut Recorder<'_>, frame: &Buffer) {
 fn write_motions(
     recorder: &mut Recorder<'_>,
     b: &Buffers<EyePlan>,
-    motions: impl Iterator<Item = LayerMotion>,
+    [now, before]: [&Sight; 2],
+    was_shown: bool,
 ) {
+    let memory = &tiles::MEMORY;
     let mut constants = SmallVec::<[u8; FEW_LAYERS]>::new();
-    for motion in motions {
-        constants.extend_from_slice(bytes_of(&motion));
+    let mut has_moved = false;
+    for motion in now.motions(before) {
+        has_moved |= motion.clip_has_moved != 0;
+        constants.extend_from_slice(bytes_of(&LayerMotion {
+            was_shown: motion.was_shown * u32::from(was_shown),
+            ..motion
+        }));
     }
-    recorder.update(b.get(&tiles::MEMORY.motions), 0, &constants);
+    recorder.update(b.get(&memory.motions), 0, &constants);
+    if has_moved {
+        constants.clear();
+        for sight in [before, now] {
+            constants.extend_from_slice(cast_slice(sight.surfaces()));
+        }
+        recorder.update(b.get(&memory.motion_surfaces), 0, &constants);
+    }
 }
 
 /// Records a cut by itself, for all eyes that will see it.
@@ -176,7 +191,9 @@ pub(crate) fn record(
     if plan.way.draws_motion
         && let [Some(now), before] = resources.sights
     {
-        recorder.label("motion", |r| write_motions(r, b, now.motions(before)));
+        let before = now.after(before);
+        let sights = [now, before.unwrap_or(now)];
+        recorder.label("motion", |r| write_motions(r, b, sights, before.is_some()));
     }
     if owns_cut {
         record_stages(
@@ -206,6 +223,7 @@ pub(crate) fn record(
         &cutoff::MEMORY.cut_records,
         &compact::MEMORY.splat_gaussians,
         &tiles::MEMORY.motions,
+        &tiles::MEMORY.motion_surfaces,
         &shared.frame,
         &shared.counts,
     ];

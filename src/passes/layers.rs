@@ -131,6 +131,21 @@ impl CutLayers {
                 == bytemuck::cast_slice::<_, u8>(other.surfaces())
     }
 
+    /// True when the same is kept of one layer, by its number.
+    pub(super) fn keeps_like(&self, other: &Self, layer: usize) -> bool {
+        let [ours, theirs] = [self, other].map(|layers| {
+            let LayerRegion {
+                op,
+                first_surface,
+                surface_count,
+                ..
+            } = layers.layers()[layer].region;
+            let surfaces = &layers.surfaces()[first_surface as usize..][..surface_count as usize];
+            (op, bytemuck::cast_slice::<_, u8>(surfaces))
+        });
+        ours == theirs
+    }
+
     fn are_like<T: bytemuck::NoUninit>(&self, other: &Self, part: fn(&CutLayer) -> T) -> bool {
         let (ours, theirs) = (self.layers(), other.layers());
         let mut pairs = ours.iter().zip(theirs);

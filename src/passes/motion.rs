@@ -1,84 +1,32 @@
 //! How far what the pixels of a layer show has moved since an earlier frame.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
+use std::sync::atomic::AtomicU64;
 
 use glam::DVec3;
 
 use crate::passes::bin::lists;
 use crate::passes::buffers::Buffers;
+use crate::passes::cut_plan::CutPlan;
 use crate::passes::eye_plan::EyePlan;
+use crate::passes::layers::CutLayers;
 use crate::passes::pipelines::{Draw, Pipelines};
 use crate::passes::scene_buffers::SceneBuffers;
 use crate::passes::shaders::motion;
 use crate::passes::{compact, composite, project, shared, tiles};
-use crate::types::{self, LayerMotion};
-use rara_base::error::Result;
-use rara_gpu::{Attachments, Buffer, BufferDesc, DepthUse, Device, Drawer, Location};
+use crate::types::{self, LayerMotion, SurfaceData};
+use rara_gpu::{Attachments, Buffer, DepthUse, Drawer};
 use rara_scene::camera::{Camera, Projection};
 
-/// What a scene keeps of Gaussians that edits have moved: what they were in the last frame.
+/// The buffers of a scene that tell how far edits have moved its Gaussians: of what they are and, if any has moved, of what
+/// they were.
 #[derive(Debug, Clone)]
-pub(crate) struct EarlierShapes {
-    buffer: Buffer,
-    /// The number of the last edit that has moved any, from 1 on.
-    edit: u32,
-    /// The number of the last one that a frame has shown.
-    shown: Arc<AtomicU32>,
-}
+pub(crate) struct Shapes(Buffer, Option<Buffer>);
 
-impl EarlierShapes {
-    /// Makes room for as many bytes as a scene's Gaussians take. Nothing is in it yet.
-    pub(super) fn new(device: &Device, size: u64) -> Result<Self> {
-        device.check_budget("what edited Gaussians were", size, 0)?;
-        let desc = BufferDesc {
-            name: "earlier",
-            size,
-            location: Location::GpuOnly,
-        };
-        Ok(Self {
-            buffer: device.create_buffer(&desc)?,
-            edit: 0,
-            shown: Arc::default(),
-        })
-    }
-
-    pub(super) fn buffer(&self) -> &Buffer {
-        &self.buffer
-    }
-
-    /// The numbers of the last edit and of the last one that a frame has shown.
-    pub(super) fn numbers(&self) -> [u32; 2] {
-        [self.edit, self.shown.load(Ordering::Relaxed)]
-    }
-
-    /// The same after one more edit.
-    pub(super) fn edited(&self) -> Self {
-        Self {
-            edit: self.edit + 1,
-            ..self.clone()
-        }
-    }
-
-    /// Notes that a frame shows the edits.
-    pub(crate) fn show(&self) {
-        self.shown.store(self.edit, Ordering::Relaxed);
-    }
-}
-
-/// The buffers that tell how far edits have moved Gaussians: of what they are and of what they were.
-#[derive(Debug, Clone)]
-pub(crate) struct EditedShapes([Buffer; 2]);
-
-impl EditedShapes {
-    /// Those of a scene, if edits have moved any of its Gaussians.
-    pub(crate) fn new(scene: &SceneBuffers) -> Option<Self> {
-        let earlier = scene.earlier.as_ref()?;
-        Some(Self([&scene.gaussians, &earlier.buffer].map(Clone::clone)))
-    }
-
-    pub(super) fn buffers(&self) -> [&Buffer; 2] {
-        self.0.each_ref()
+impl Shapes {
+    pub(crate) fn new(scene: &SceneBuffers) -> Self {
+        let earlier = scene.earlier.as_ref();
+        Self(scene.gaussians.clone(), earlier.map(|e| e.buffer().clone()))
     }
 }
 
@@ -89,10 +37,12 @@ struct LayerSight {
     camera: Camera,
     /// The scene's units in one of the layer's.
     unit: f64,
+    /// What its positions are relative to.
+    origin: DVec3,
     replaced_after: u32,
 }
 
-/// Where the layers of a frame are seen, and which edits have moved their Gaussians.
+/// Where the layers of a frame are seen, which edits have moved their Gaussians, and what the clip keeps of them.
 #[derive(Debug, Clone)]
 pub(crate) struct Sight {
     layers: Arc<[LayerSight]>,
@@ -100,17 +50,19 @@ pub(crate) struct Sight {
     memory: Arc<AtomicU64>,
     /// The number of the last edit that has moved any of its Gaussians; 0 before.
     edit: u32,
+    kept: CutLayers,
 }
 
 impl Sight {
     /// Finds where the layers of a scene have a camera that is in its space.
-    pub(crate) fn new(scene: &SceneBuffers, camera: &Camera) -> Self {
+    pub(crate) fn new(scene: &SceneBuffers, camera: &Camera, cut: &CutPlan) -> Self {
         let seen = scene.layers().iter().map(|layer| {
             // Whatever its Gaussians are relative to: others may have taken their place.
             let placement = layer.state().placement;
             LayerSight {
                 camera: camera.in_scene(&placement),
                 unit: placement.scale(),
+                origin: layer.origin,
                 replaced_after: layer.replaced_after,
             }
         });
@@ -118,6 +70,7 @@ impl Sight {
             layers: seen.collect(),
             memory: scene.held.clone(),
             edit: scene.last_edit(),
+            kept: cut.layers.clone(),
         }
     }
 
@@ -129,20 +82,41 @@ impl Sight {
         }
     }
 
-    /// How the layers have moved since an earlier frame. Without one nothing has, nor since one of a scene of other layers or
-    /// of another projection.
+    /// An earlier frame, if it tells where what this one shows was: it showed as many layers in the same projection.
+    pub(crate) fn after<'a>(&self, before: Option<&'a Self>) -> Option<&'a Self> {
+        let projection = |sight: &Self| sight.layers.first().map(|layer| layer.camera.projection);
+        before.filter(|before| {
+            before.layers.len() == self.layers.len() && projection(before) == projection(self)
+        })
+    }
+
+    /// How the layers have moved since an earlier frame.
     pub(crate) fn motions<'a>(
         &'a self,
-        before: Option<&'a Self>,
+        before: &'a Self,
     ) -> impl Iterator<Item = LayerMotion> + 'a {
-        let before = before.filter(|before| before.layers.len() == self.layers.len());
-        let before = before.unwrap_or(self);
         let since = self.shown_by(before);
-        let pairs = self.layers.iter().zip(before.layers.iter());
-        pairs.map(move |(now, before)| LayerMotion {
-            since: since.max(now.replaced_after),
-            ..way_of(&now.camera, now.unit, &before.camera)
+        let kept_before = before.kept.surfaces().len();
+        let tells = kept_before + self.kept.surfaces().len() <= tiles::MOTION_SURFACES;
+        let pairs = self.layers.iter().zip(before.layers.iter()).enumerate();
+        pairs.map(move |(at, (now, was))| {
+            let stays =
+                !tells || now.origin != was.origin || self.kept.keeps_like(&before.kept, at);
+            let layer = &before.kept.layers()[at];
+            LayerMotion {
+                region: layer.region,
+                clip_has_moved: (!stays).into(),
+                first_surface: kept_before as u32,
+                was_shown: layer.content.visible,
+                since: since.max(now.replaced_after),
+                ..way_of(&now.camera, now.unit, &was.camera)
+            }
         })
+    }
+
+    /// The surfaces of its clips.
+    pub(crate) fn surfaces(&self) -> &[SurfaceData] {
+        self.kept.surfaces()
     }
 }
 
@@ -156,6 +130,7 @@ pub(crate) fn draw(plan: &EyePlan, attachments: Attachments) -> Draw<motion::Pro
         written_depth: plan.way.writes_depth,
         strongest: false, // nothing lies behind them
         layered: plan.cut.layers.layers().len() > 1,
+        combined: true, // what the frame before had follows later
     };
     Draw::new(
         [front, &motion::FRAG],
@@ -163,6 +138,7 @@ pub(crate) fn draw(plan: &EyePlan, attachments: Attachments) -> Draw<motion::Pro
         attachments,
         DepthUse::Ignored,
     )
+    .overwriting()
 }
 
 /// Draws inside the host's rendering scope. `origin` is where its viewport begins, px; pixels whose alpha is below `least_alpha`
@@ -170,12 +146,11 @@ pub(crate) fn draw(plan: &EyePlan, attachments: Attachments) -> Draw<motion::Pro
 pub(crate) fn record(
     drawer: &mut Drawer<'_>,
     pipelines: &Pipelines,
-    (plan, b, edited): (&EyePlan, &Buffers<EyePlan>, Option<&EditedShapes>),
+    (plan, b, shapes): (&EyePlan, &Buffers<EyePlan>, &Shapes),
     attachments: Attachments,
     (origin, least_alpha): ([f32; 2], f32),
 ) {
-    let empty = b.get(&shared::MEMORY.empty);
-    let [gaussians, earlier] = edited.map_or([empty; 2], EditedShapes::buffers);
+    let Shapes(gaussians, earlier) = shapes;
     let buffers = motion::Buffers {
         frame: b.get(&shared::MEMORY.frame),
         tile_begins: b.get(&lists::MEMORY.tile_begins),
@@ -184,7 +159,8 @@ pub(crate) fn record(
         splat_gaussians: b.get(&compact::MEMORY.splat_gaussians),
         motions: b.get(&tiles::MEMORY.motions),
         gaussians,
-        earlier,
+        earlier: earlier.as_ref().unwrap_or(gaussians),
+        surfaces: b.get(&tiles::MEMORY.motion_surfaces),
     };
     let params = motion::Params {
         origin,
@@ -197,9 +173,6 @@ pub(crate) fn record(
 /// The map from a pixel now to the pixel before, less that which changes nothing, so that single precision holds small ways too.
 /// Both cameras are in the layer's space.
 fn way_of(now: &Camera, unit: f64, before: &Camera) -> LayerMotion {
-    if now.projection != before.projection {
-        return bytemuck::Zeroable::zeroed();
-    }
     // From axes of the camera, in the layer's units, to those of the camera before.
     let turn = before.rotation * now.rotation.transpose();
     let way = before.rotation * (now.eye - before.eye);

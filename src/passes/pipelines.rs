@@ -24,8 +24,18 @@ pub(crate) struct PipelineKey {
     name: &'static str,
     shader: Identity,
     constants: ConstantList,
-    /// A draw also has a fragment shader, attachments, and a use for the host's depth.
-    draw: Option<(Identity, Attachments, DepthUse)>,
+    draw: Option<DrawKey>,
+}
+
+/// What a draw has besides.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+struct DrawKey {
+    fragment: Identity,
+    attachments: Attachments,
+    /// The use for the host's depth.
+    depth: DepthUse,
+    /// True where colours are blended `over` those that are there.
+    blends: bool,
 }
 
 /// A shader, compared by where it is.
@@ -135,12 +145,26 @@ impl<P: Interface> Draw<P> {
             name: P::NAME,
             shader: Identity(front),
             constants: constants.list(),
-            draw: Some((Identity(fragment), attachments, depth)),
+            draw: Some(DrawKey {
+                fragment: Identity(fragment),
+                attachments,
+                depth,
+                blends: depth != DepthUse::Written,
+            }),
         };
         Self {
             key,
             program: PhantomData,
         }
+    }
+
+    /// The same where fragments take the place of what is there.
+    pub(super) fn overwriting(mut self) -> Self {
+        self.key.draw = self.key.draw.map(|draw| DrawKey {
+            blends: false,
+            ..draw
+        });
+        self
     }
 
     pub(super) fn key(&self) -> PipelineKey {
@@ -244,8 +268,12 @@ impl PipelineKey {
         let made = match (self.compute_desc(bindings), self.draw) {
             (Some(desc), _) => AnyPipeline::Compute(ComputePipeline::new(device, &desc)?),
             (None, draw) => {
-                let (Identity(fragment), attachments, depth) =
-                    draw.expect("what computes nothing draws");
+                let DrawKey {
+                    fragment: Identity(fragment),
+                    attachments,
+                    depth,
+                    blends,
+                } = draw.expect("what computes nothing draws");
                 let desc = GraphicsDesc {
                     name: self.name,
                     front: self.shader.0,
@@ -253,7 +281,7 @@ impl PipelineKey {
                     constants: &self.constants,
                     attachments,
                     depth,
-                    blend: (depth != DepthUse::Written).then_some(OVER),
+                    blend: blends.then_some(OVER),
                     topology: vk::PrimitiveTopology::TRIANGLE_STRIP,
                     bindings,
                 };

@@ -8,7 +8,7 @@ use ash::vk;
 use bytemuck::cast_slice;
 
 use crate::passes::cut_plan::SceneFacts;
-use crate::passes::motion::EarlierShapes;
+use crate::passes::earlier_shapes::EarlierShapes;
 use crate::passes::pair_estimate::PairSample;
 use crate::passes::scene_layer::{
     PackedLayer, SceneLayer, join_sets, layer_index, sizes, write_in_order, written_bytes,

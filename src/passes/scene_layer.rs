@@ -37,7 +37,7 @@ pub struct SceneLayer {
     /// The same of the set that the layer is a part of, or its own: what depends on it is alike in all parts of a set.
     pub(super) corners: [Vec3; 2],
     /// What their positions are relative to, in the layer's units.
-    origin: DVec3,
+    pub(super) origin: DVec3,
     /// How its Gaussians were trained.
     pub(super) training: Training,
     pub(super) state: LayerState,

@@ -14,7 +14,7 @@ use crate::passes::tile_picture::TilePicture;
 use crate::passes::weight::{self, Weight};
 use crate::passes::work::Work;
 use crate::passes::{cutoff, project, reclip, shared};
-use crate::types::{self, LayerMotion};
+use crate::types::{self, LayerMotion, SurfaceData};
 use rara_base::limits;
 use rara_gpu::{Buffer, DeviceShape};
 
@@ -26,6 +26,9 @@ pub(crate) static STAGE: Stage<EyePlan> = Stage {
     record,
 };
 
+/// The most surfaces of the clips of two frames of which pixels are asked whether the earlier one kept them.
+pub(super) const MOTION_SURFACES: usize = 512;
+
 memory! { EyePlan:
     /// The picture that the tiles make, and behind it what else they find of each pixel, as `behind.glsl` says.
     tile_picture: |plan| plan.when_tiled(plan.pixels() * plan.way.tile_pixels.bytes() + behind(plan)),
@@ -33,6 +36,11 @@ memory! { EyePlan:
     /// How each layer has moved since the frame before.
     motions: |plan| match plan.way.draws_motion {
         true => u64::from(plan.cut.data.scene.layer_count) * size_of::<LayerMotion>() as u64,
+        false => 0,
+    };
+    /// The surfaces of the clips of the frame before and of this one, where motion is wanted.
+    motion_surfaces: |plan| match plan.way.draws_motion {
+        true => (MOTION_SURFACES * size_of::<SurfaceData>()) as u64,
         false => 0,
     };
     /// The host's depth; empty where it hides nothing.

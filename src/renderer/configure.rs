@@ -11,7 +11,7 @@ use super::frames::Decision;
 use super::request::{FrameRequest, Kept};
 use super::{ConfiguredFrame, Renderer, out_of_order};
 use crate::passes::{
-    CutPlan, EditedShapes, EyeFacts, EyePlan, Occluders, PreviousFrame, SceneBuffers, Sight, Sizes,
+    CutPlan, EyeFacts, EyePlan, Occluders, PreviousFrame, SceneBuffers, Shapes, Sight, Sizes,
     SplatColours, Targets, TilePixels, TileWork, Work,
 };
 use rara_base::error::{Error, Result};
@@ -68,13 +68,10 @@ impl Renderer {
         let bindings = self.bindings_of(largest.max(request.scene.largest()))?;
         let needs = |need: &mut dyn FnMut(_)| plan.pipelines(targets, need);
         decision.is_first_use = self.pipelines.ensure(&self.device, bindings, &needs)?;
-        let edited = self
-            .desc
-            .motion
-            .and_then(|_| EditedShapes::new(request.scene));
+        let shapes = self.desc.motion.map(|_| Shapes::new(request.scene));
         let frame = ConfiguredFrame {
             state: FrameState {
-                edited,
+                shapes,
                 decision,
                 cut,
                 buffers,
@@ -168,12 +165,12 @@ impl Renderer {
         };
         Ok(Decision {
             scene: scene.id,
+            sight: self.desc.motion.map(|_| Sight::new(scene, camera, &cut)),
             plan: EyePlan::new(facts, cut, eye, camera, settings)?,
             reason,
             targets,
             depth_map,
             unit: self.placement.scale(),
-            sight: self.desc.motion.map(|_| Sight::new(scene, camera)),
             is_first_use: false,
         })
     }

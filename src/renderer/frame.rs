@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::cut::SeenCut;
 use super::frames::Decision;
-use crate::passes::{Buffers, CutPlan, EditedShapes, EyePlan, Pipelines, TilePicture, tiles};
+use crate::passes::{Buffers, CutPlan, EyePlan, Pipelines, Shapes, TilePicture, tiles};
 use crate::stats::RasterChoice;
 
 /// A frame that [`Renderer::configure`](super::Renderer::configure) has configured and
@@ -38,8 +38,8 @@ pub(super) struct FrameState {
     pub(super) cut: FrameCut,
     pub(super) buffers: Arc<Buffers<EyePlan>>,
     pub(super) pipelines: Arc<Pipelines>,
-    /// How far edits have moved Gaussians, where motion is drawn.
-    pub(super) edited: Option<EditedShapes>,
+    /// The scene's Gaussians, where motion is drawn.
+    pub(super) shapes: Option<Shapes>,
     /// The number of its renderer.
     pub(super) renderer: u64,
 }

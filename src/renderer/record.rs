@@ -264,14 +264,20 @@ impl Renderer {
     /// Records the splats' motion inside a rendering scope of its own, with the attachment of
     /// [`RendererDesc::motion`](crate::RendererDesc::motion) and, if there is one, the same depth attachment. Red and green are
     /// where what a pixel shows was in the frame that this renderer has prepared before, less where it is, px to the right and
-    /// down in the camera's picture; blue is the number of its layer, and alpha is 1. A pixel shows the splat that adds most to its alpha,
-    /// where that is on the pixel's line of sight, as [`draw_depth`](Self::draw_depth) says. The camera, the renderer's placement
-    /// and those of the layers move it. A clip that moves over Gaussians that stand still moves nothing: they are where they
-    /// were. A shift of the principal point, as for temporal antialiasing, counts as motion: a host that wants it without adds
-    /// the difference of the two shifts.
+    /// down in the camera's picture; blue is the number of its layer, and alpha is 1 if that frame could show it, else 0. A pixel
+    /// shows the splat that adds most to its alpha, where that is on the pixel's line of sight, as
+    /// [`draw_depth`](Self::draw_depth) says. The camera, the renderer's placement, those of the layers and edits of their
+    /// Gaussians ([`LayerEdit::moves`](crate::LayerEdit::moves)) move it. A shift of the principal point, as for temporal
+    /// antialiasing, counts as motion: a host that wants it without adds the difference of the two shifts.
     ///
-    /// Motion is 0 where there is no frame before, since [`forget`](Self::forget) too, where that showed a scene of another
-    /// number of layers or in another projection, and where something was behind the eye. Pixels whose alpha is below
+    /// A clip that moves over Gaussians that stand still moves nothing: they are where they were. But where it keeps a place that
+    /// it cut away before, alpha is 0, since there is nothing in the frame before that a host could blend with. In mode
+    /// [`Mode::Hard`](crate::Mode::Hard) the centre of a Gaussian is that place. Clips that have more than 512 surfaces in the
+    /// two frames together leave alpha at 1.
+    ///
+    /// Motion and alpha are 0 where there is no frame before, since [`forget`](Self::forget) too, where that showed a scene of
+    /// another number of layers or in another projection, and where something was behind the eye; alpha also where the layer was
+    /// hidden. Pixels whose alpha is below
     /// [`MotionDesc::least_alpha`](crate::MotionDesc::least_alpha) keep what the host has drawn. `origin` is as in
     /// [`draw`](Self::draw).
     ///
@@ -294,11 +300,11 @@ impl Renderer {
         let plan = &decision.plan;
         let attachments = decision.targets.motion;
         let drawn = |_: &_| plan.gaussians() > 0 && plan.way.draws_motion;
-        let Some(attachments) = attachments.filter(drawn) else {
+        let (Some(attachments), Some(shapes)) = (attachments.filter(drawn), &state.shapes) else {
             return Ok(());
         };
         let pass = |drawer: &mut Drawer<'_>| {
-            let frame = (plan, buffers, state.edited.as_ref());
+            let frame = (plan, buffers, shapes);
             motion::record(
                 drawer,
                 &state.pipelines,

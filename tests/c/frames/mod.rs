@@ -142,9 +142,11 @@ fn what_is_behind_a_mesh_expected_depths_and_motion_are_the_same_bytes() {
         // SAFETY: the handles are alive.
         let drawn = unsafe { world.drawn_in_c(ours.device, &canvas, |_| uploaded) };
         assert!(drawn == truth, "motion");
-        let filled = drawn.iter().filter(|p| p[..2] == [0.0; 2] && p[3] == 1.0);
-        let filled = filled.count();
-        assert!(filled > 500, "{filled} pixels, and nothing has moved yet");
+        let filled = drawn.iter().filter(|p| **p == [0.0; 4]).count();
+        assert!(
+            filled > 500,
+            "{filled} pixels, of which no frame before tells"
+        );
         // SAFETY: all frames were waited for.
         unsafe { rara_scene_buffers_destroy(uploaded) };
     });

@@ -136,6 +136,9 @@ impl<'a> World<'a> {
     pub(super) fn canvas(&self, lent: &AdoptDesc, device: &Device) -> Canvas {
         let mut desc = CanvasDesc::new(VIEW, self.drawn.format());
         (desc.depth, desc.far) = (DEPTH, 0.0);
+        if self.drawn == Drawn::Motion {
+            desc.clear = [7.0; 4];
+        }
         let centre = self.placement.to_world(Bounds::of(self.scene).centre());
         let z = (self.camera.rotation * (centre - self.camera.eye)).z;
         let rect = vk::Rect2D {

@@ -23,6 +23,7 @@ mod kept;
 mod layer_clip;
 mod layer_names;
 mod memory;
+mod moving;
 mod near;
 mod needs;
 mod output;

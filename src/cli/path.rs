@@ -6,8 +6,9 @@ use clap::Args;
 
 use super::camera::CameraArgs;
 use super::failure::Failure;
+use super::values;
 use super::views::{Views, numbered};
-use rara_shots::{Orbit, Spline};
+use rara_shots::{Ease, Orbit, Spline};
 
 /// Where the camera moves.
 #[derive(Debug, Args)]
@@ -19,15 +20,19 @@ pub(super) struct PathArgs {
     /// and --target are given, it starts at --eye and goes around --target. spline moves the camera smoothly through cameras
     /// of a file; with ,closed at the end it returns to the first one. cameras draws the cameras of a file and none between
     /// them.
-    #[arg(long, value_name = "PATH", value_parser = route, conflicts_with_all = ["camera", "view", "section"])]
+    #[arg(long, value_name = "PATH", value_parser = route, conflicts_with_all = ["camera", "view"])]
     path: Option<Route>,
-    /// Number of pictures of an orbit or a spline [default: 120]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    /// Number of pictures [default: 120; of a sweep 30]
+    ///
+    /// --path cameras has one for each camera.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     frames: Option<u32>,
+    /// Begin the movement slowly (in), end it slowly (out), or both
+    ///
+    /// It holds for the camera and for a clip that moves.
+    #[arg(long, value_name = "HOW", value_parser = values::named::<Ease>(), default_value_t)]
+    ease: Ease,
 }
-
-/// Pictures of a path where nothing else is said: four seconds of a film.
-const FRAMES: u32 = 120;
 
 #[derive(Debug, Clone, PartialEq)]
 enum Route {
@@ -93,13 +98,27 @@ impl PathArgs {
         matches!(self.path, Some(Route::Spline { .. } | Route::Cameras(_)))
     }
 
-    /// The cameras that the flags mean, also of files beside these scenes; reads their files.
-    pub(super) fn views(&self, camera: &CameraArgs, scenes: &[PathBuf]) -> Result<Views, Failure> {
-        let frames = self.frames.unwrap_or(FRAMES);
+    /// The number of pictures that is asked for, if any is.
+    pub(super) fn frames(&self) -> Option<u32> {
+        self.frames
+    }
+
+    /// How what moves begins and ends.
+    pub(super) fn ease(&self) -> Ease {
+        self.ease
+    }
+
+    /// The cameras that the flags mean, so many of an orbit or a spline, also of files beside these scenes; reads their files.
+    pub(super) fn views(
+        &self,
+        camera: &CameraArgs,
+        scenes: &[PathBuf],
+        frames: u32,
+    ) -> Result<Views, Failure> {
         match &self.path {
             None => camera.meant(scenes),
             Some(Route::Orbit(turns)) => {
-                let orbit = Orbit::new(*turns, frames);
+                let orbit = Orbit::new(*turns, frames).ease(self.ease);
                 camera.without_file("--path orbit")?;
                 let begin = camera.meant(scenes)?;
                 Ok(match (begin, camera.pivot()) {
@@ -119,7 +138,8 @@ impl PathArgs {
                         "--path spline: {error}; --size gives all pictures one size, and spline:0,3,5 chooses cameras"
                     ))
                 })?;
-                Ok(Views::Given(numbered("spline", spline.cameras(frames))))
+                let cameras = spline.ease(self.ease).cameras(frames);
+                Ok(Views::Given(numbered("spline", cameras)))
             }
             Some(Route::Cameras(views)) => {
                 if self.frames.is_some() {

@@ -7,12 +7,13 @@ use glam::DVec3;
 use rara::{Aov, Camera, Clip, Picture, Scene, Settings, Show};
 use rara_shots::{Panorama, levelled};
 
-use super::clip::Regions;
+use super::clip::{Regions, joined};
 use super::failure::Failure;
 use super::film;
 use super::frame::FrameArgs;
 use super::kept::SessionCache;
 use super::memory;
+use super::moving::{Movement, MovingArgs};
 use super::near;
 use super::output::{self, counted};
 use super::panorama::PanoramaArgs;
@@ -47,6 +48,7 @@ Examples:
   rara render scene.ply -o deep.exr --aov depth,normal,layer,weight,count
   rara render scene.ply -o round.mp4 --path orbit --frames 240 --background white
   rara render scene.ply -o way.apng --cameras cameras.json --path spline:0,7,12 --size 640x360
+  rara render scene.ply -o open.mp4 --path orbit --from plane:z=0% --to plane:z=60% --ease both
   rara render scene.ply -o room.png --panorama --eye 0,0,0
   rara render scene.ply --repeat 20 --json
 
@@ -75,6 +77,8 @@ pub(super) struct Render {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     repeat: Option<u32>,
     #[command(flatten)]
+    moving: MovingArgs,
+    #[command(flatten)]
     pictures: PictureArgs,
     #[command(flatten)]
     frame: FrameArgs,
@@ -94,9 +98,12 @@ pub(super) struct Render {
     scenes: SceneArgs,
 }
 
+/// Pictures of a path where nothing else is said: four seconds of a film.
+const FRAMES: u32 = 120;
+
 enum Pictures {
-    /// Pictures of cameras, under one clip.
-    Views(Views, Regions),
+    /// Pictures of cameras, under one clip, and perhaps one that moves.
+    Views(Views, Regions, Option<Movement>),
     Sections(Sections),
 }
 
@@ -117,7 +124,7 @@ impl Shot {
 impl Pictures {
     fn numbers(&self) -> Vec<usize> {
         match self {
-            Self::Views(views, _) => views.numbers().collect(),
+            Self::Views(views, ..) => views.numbers().collect(),
             Self::Sections(sections) => sections.numbers().collect(),
         }
     }
@@ -125,7 +132,7 @@ impl Pictures {
     /// Returns the clips of all pictures, without the planes of sections.
     fn regions(&self) -> &Regions {
         match self {
-            Self::Views(_, regions) => regions,
+            Self::Views(_, regions, _) => regions,
             Self::Sections(sections) => sections.regions(),
         }
     }
@@ -133,16 +140,25 @@ impl Pictures {
     /// The pictures, once the scene is known.
     fn shots(self, scene: &Scene<'_>) -> Result<Vec<Shot>, Failure> {
         Ok(match self {
-            Self::Views(views, regions) => {
-                let clip = regions.clip(scene)?;
-                let views = views.in_scene(scene)?.into_iter();
-                let shot = |view| Shot {
-                    view,
-                    clip: clip.clone(),
-                    section: None,
-                    moment: None,
+            Self::Views(views, regions, movement) => {
+                let (mut shapes, op) = (regions.expressions(scene)?, regions.op());
+                let moving = movement.map(|movement| movement.in_scene(scene));
+                let moving = moving.transpose()?;
+                let views = views.in_scene(scene)?.into_iter().zip(0..);
+                let mut shot = |(view, index)| -> Result<Shot, Failure> {
+                    let moved = moving.as_ref().map(|moving| moving.at(index));
+                    let still = shapes.len();
+                    shapes.extend(moved.transpose()?);
+                    let clip = joined(&shapes, op);
+                    shapes.truncate(still);
+                    Ok(Shot {
+                        view,
+                        clip,
+                        section: None,
+                        moment: None,
+                    })
                 };
-                views.map(shot).collect()
+                views.map(&mut shot).collect::<Result<_, _>>()?
             }
             Self::Sections(sections) => {
                 let sections = sections.sections(scene)?.into_iter();
@@ -215,7 +231,7 @@ impl Render {
         let destination = (self.pictures).destination(output, (numbers, several), None)?;
         let size = match (&meant.panorama, &meant.pictures) {
             (Some(panorama), _) => panorama.size(),
-            (None, Pictures::Views(Views::Given(views), _)) if !views.is_empty() => {
+            (None, Pictures::Views(Views::Given(views), ..)) if !views.is_empty() => {
                 (views[0].camera.width, views[0].camera.height)
             }
             _ => self.frame.camera.chosen_size(),
@@ -237,19 +253,36 @@ impl Render {
             self.frame.camera.look_around(panorama.size(), ahead);
         }
         let pictures = match sections {
+            Some(_) if self.path.moves() => {
+                return Err(Failure::Usage(
+                    "--path moves the camera, and --section has it face the cut: give one of them"
+                        .into(),
+                ));
+            }
             Some(sections) => Pictures::Sections(sections),
             None => {
                 let (clip, staged, fps) = self.frame.staged(settings)?;
                 settings = staged;
                 self.pictures
                     .pace(fps.filter(|_| self.path.is_as_in_file()));
-                let views = self.path.views(&self.frame.camera, &self.scenes.places())?;
+                let frames = self.path.frames().unwrap_or(FRAMES);
+                let places = self.scenes.places();
+                let views = self.path.views(&self.frame.camera, &places, frames)?;
+                let pace = (views.numbers().count() as u32, self.path.ease());
+                let movement = self.moving.meant(None, pace)?;
+                if movement.is_some() && !self.path.moves() {
+                    return Err(Failure::Usage(
+                        "--from and --to move a clip while --path moves the camera: give a path, or let the clip move alone by \
+                         rara sweep"
+                            .into(),
+                    ));
+                }
                 if panorama.is_some() && matches!(views, Views::Framed { .. }) {
                     return Err(Failure::Usage(
                         "--panorama is what is seen from one place: say which by --eye, --camera or --cameras".into(),
                     ));
                 }
-                Pictures::Views(views, clip)
+                Pictures::Views(views, clip, movement)
             }
         };
         let numbers = pictures.numbers();

@@ -1,12 +1,10 @@
-//! `rara sweep`: the camera stands still and a clip moves: a plane across the scene, or any region to another.
+//! `rara sweep`: a clip moves: a plane across the scene, or any region to another. The camera stands still or moves too.
 
-use std::cell::LazyCell;
 use std::path::PathBuf;
 
 use clap::Args;
 use glam::DVec3;
-use rara::clip::Expression;
-use rara::{Bounds, Clip, Plane, Settings, Show};
+use rara::{Clip, Settings, Show};
 
 use super::clip::{Regions, joined};
 use super::combine::FrameSummary;
@@ -15,16 +13,18 @@ use super::frame::FrameArgs;
 use super::kept::SessionCache;
 use super::layer_names;
 use super::memory;
+use super::moving::{Movement, MovingArgs};
 use super::near;
-use super::pictures::{self, Destination, Order, PictureArgs, Pixels, Plan, RenderedPicture};
+use super::path::PathArgs;
+use super::pictures::{
+    self, Destination, Order, PictureArgs, PictureJob, Pixels, Plan, RenderedPicture,
+};
 use super::profile::{Profile, ProfileArgs};
 use super::report::{FrameRecord, RenderReport, SceneReport};
 use super::save_camera::SaveCameraArgs;
 use super::scenes::SceneArgs;
 use super::values;
 use super::views::Views;
-use rara::scene::extent_along;
-use rara::scene::layers::Region;
 
 /// Move a plane across the scene, or change one clip into another, in equal steps
 #[derive(Debug, Args)]
@@ -34,6 +34,7 @@ Examples:
   rara sweep scene.ply --clip-normal 0,0,1 --frames 240 -o sweep.mp4 --background white
   rara sweep scene.ply --clip-normal 1,0,0 --frames 30 --mode hard --json
   rara sweep scene.ply --clip-normal 0,0,1 --clip-file planes.json:skin -o frames
+  rara sweep scene.ply --clip-normal 0,0,1 --path orbit:0.5 --ease both --frames 240 -o round.mp4
   rara sweep scene.ply --from sphere:0,0,0,.1 --to sphere:0,0,0,2 -o frames
   rara sweep scene.ply --from 'all(plane:1,0,0,0, box:0,0,0,1,1,1)' --to 'all(plane:0,1,0,0, box:0,0,0,1,1,1)' -o turn
 
@@ -49,17 +50,8 @@ pub(super) struct Sweep {
     #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]
     #[arg(required_unless_present = "from", conflicts_with = "from")]
     clip_normal: Option<DVec3>,
-    /// The clip of the first frame, an expression as for --clip-expr
-    #[arg(long, value_name = "EXPRESSION", value_parser = str::parse::<Region>, allow_hyphen_values = true)]
-    from: Option<Region>,
-    /// The clip of the last frame; it has the same kinds of shapes in the same order as --from
-    ///
-    /// Points, sizes and radii are interpolated linearly, and rotations and normals along the shortest arcs.
-    #[arg(long, value_name = "EXPRESSION", value_parser = str::parse::<Region>, allow_hyphen_values = true)]
-    to: Option<Region>,
-    /// Number of frames
-    #[arg(long, value_name = "N", default_value_t = 30, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
-    frames: u32,
+    #[command(flatten)]
+    moving: MovingArgs,
     /// Render each frame without reusing results; the pictures are the same
     ///
     /// Without this flag, a frame reuses those results of the previous frame that the moving clip does not change.
@@ -70,6 +62,8 @@ pub(super) struct Sweep {
     repeat: u32,
     #[command(flatten)]
     pictures: PictureArgs,
+    #[command(flatten)]
+    path: PathArgs,
     #[command(flatten)]
     frame: FrameArgs,
     #[command(flatten)]
@@ -83,6 +77,26 @@ pub(super) struct Sweep {
 /// What makes several pictures.
 const SEVERAL: &str = "a sweep makes";
 
+/// Pictures where nothing else is said.
+const FRAMES: u32 = 30;
+
+/// What the flags mean, before the scene is known.
+struct SweepPlan {
+    settings: Settings,
+    /// The shapes that stand still.
+    regions: Regions,
+    /// One camera, or one for each picture.
+    views: Views,
+    movement: Movement,
+    frames: u32,
+}
+
+impl SweepPlan {
+    fn numbers(&self) -> Vec<usize> {
+        (0..self.frames as usize).collect()
+    }
+}
+
 impl Sweep {
     pub(super) fn run(self) -> Result<(), Failure> {
         self.run_in(&mut SessionCache::default(), None)
@@ -90,8 +104,8 @@ impl Sweep {
 
     /// What a run of many commands has to know before it draws any picture.
     pub(super) fn plan(&self) -> Result<Plan, Failure> {
-        self.meant()?;
-        let numbers: Vec<_> = (0..self.frames as usize).collect();
+        let meant = self.meant()?;
+        let numbers = meant.numbers();
         let output = self.output.as_deref();
         let wanted = (&numbers[..], Some(SEVERAL));
         let destination = self.pictures.destination(output, wanted, None)?;
@@ -102,16 +116,31 @@ impl Sweep {
         ))
     }
 
-    /// What the flags mean: the settings, the shapes that stand still, and the camera. Errors that do not depend on the scene
-    /// are found before it is read.
-    fn meant(&self) -> Result<(Settings, Regions, Views), Failure> {
-        let (shapes, settings, _) = self.frame.staged(self.frame.settings.meant())?;
+    /// What the flags mean. Errors that do not depend on the scene are found before it is read.
+    fn meant(&self) -> Result<SweepPlan, Failure> {
+        let (regions, settings, _) = self.frame.staged(self.frame.settings.meant())?;
         if settings.show == Show::Count {
             pictures::needs_floats(self.output.as_deref(), pictures::COUNTS)?;
         }
-        self.moving(|region| Ok(region.example().clone()))?;
-        let views = self.frame.camera.meant(&self.scenes.places())?;
-        Ok((settings, shapes, views.single("a sweep")?))
+        let frames = self.path.frames().unwrap_or(FRAMES);
+        let places = self.scenes.places();
+        let mut views = self.path.views(&self.frame.camera, &places, frames)?;
+        let frames = match self.path.moves() {
+            true => views.numbers().count() as u32,
+            false => {
+                views = views.single("a sweep without --path")?;
+                frames
+            }
+        };
+        let pace = (frames, self.path.ease());
+        let movement = self.moving.meant(self.clip_normal, pace)?;
+        Ok(SweepPlan {
+            settings,
+            regions,
+            views,
+            movement: movement.expect("one of them is required"),
+            frames,
+        })
     }
 
     /// Draws the pictures that are in `order`, or all of them and reports them.
@@ -120,69 +149,58 @@ impl Sweep {
         kept: &mut SessionCache,
         order: Option<&dyn Order>,
     ) -> Result<(), Failure> {
-        let (settings, shapes, views) = self.meant()?;
-        let numbers: Vec<_> = (0..self.frames as usize).collect();
+        let mut plan = self.meant()?;
+        let numbers = plan.numbers();
         let output = self.output.as_deref();
         let wanted = (&numbers[..], Some(SEVERAL));
         let destination = self.pictures.destination(output, wanted, order)?;
-        let settings = destination.settings(settings);
+        plan.settings = destination.settings(plan.settings);
 
         let profile = self.profile.begin(|| destination.files(&numbers))?;
-        let done = self.draw((&profile, kept), (views, shapes), &destination, &settings);
+        let done = self.draw((&profile, kept), plan, &destination);
         profile.end_after(done)
-    }
-
-    /// What moves, between regions that are meant so.
-    fn moving(
-        &self,
-        meant: impl Fn(&Region) -> rara::Result<Expression>,
-    ) -> Result<SweepTarget, Failure> {
-        let moving = match (self.clip_normal, &self.from, &self.to) {
-            (Some(normal), ..) => {
-                SweepTarget::Plane(Plane::new(normal, 0.0).map_err(Failure::usage)?.normal())
-            }
-            (None, Some(from), Some(to)) => SweepTarget::Region(meant(from)?, meant(to)?),
-            _ => unreachable!("one of them is required"),
-        };
-        for index in 0..self.frames.min(MOST_TRIED) {
-            let share = position((0.0, 1.0), index, self.frames.min(MOST_TRIED));
-            moving.at(share).map_err(Failure::usage)?;
-        }
-        Ok(moving)
     }
 
     fn draw(
         &self,
         (profile, kept): (&Profile, &mut SessionCache),
-        (views, regions): (Views, Regions),
+        plan: SweepPlan,
         destination: &Destination<'_>,
-        settings: &Settings,
     ) -> Result<(), Failure> {
+        let SweepPlan {
+            settings,
+            regions,
+            views,
+            movement,
+            frames,
+        } = plan;
         let (device, sh) = (&self.frame.device, settings.precision.sh);
         let session_of = (device, &self.profile, sh);
         let (mut place, mut loaded) = kept.load(profile, &self.scenes, &session_of)?;
         regions.settle(&mut loaded)?;
         layer_names::tell_own_clips(&loaded);
         let scene = loaded.scene();
-        let bounds = LazyCell::new(|| Bounds::of(&scene));
-        let moving = self.moving(|region| region.resolve(|| *bounds))?;
-        let view = views.in_scene(&scene)?.remove(0);
-        self.save_camera.save([&view].into_iter())?;
-        let camera = view.camera;
+        let moving = movement.in_scene(&scene)?;
+        let views = views.in_scene(&scene)?;
+        self.save_camera.save(views.iter())?;
+        let view_of = |index: u32| &views[(index as usize).min(views.len() - 1)];
         let (mut shapes, op) = (regions.expressions(&scene)?, regions.op());
-        let called = |index: &u32| (*index as usize, view.name.clone());
-        let Some(planned) = destination.left((0..self.frames).collect(), called)? else {
+        let called = |index: &u32| (*index as usize, view_of(*index).name.clone());
+        let Some(planned) = destination.left((0..frames).collect(), called)? else {
             return Ok(());
         };
-        let range = match moving {
-            SweepTarget::Plane(normal) => extent_along(&scene, normal),
-            SweepTarget::Region(..) => (0.0, 1.0),
+        let size = |one: &PictureJob<u32>| {
+            let camera = &view_of(one.what).camera;
+            (camera.width, camera.height)
         };
-        let size = (camera.width, camera.height);
-        memory::check_picture(size, 0)?;
+        memory::check_pictures(planned.iter().map(size), 0)?;
+        let size = destination.size(planned.iter().map(size))?;
         let scene_report = SceneReport::new(&loaded);
         let whole = joined(&shapes, op);
-        let taken = near::of(&scene, [(&view.name[..], &camera, &whole)].into_iter());
+        let seen = views
+            .iter()
+            .map(|view| (&view.name[..], &view.camera, &whole));
+        let taken = near::of(&scene, seen);
         let scene = match destination.order() {
             Some(_) => loaded.scene(), // later commands need the Gaussians again
             None => loaded.take_scene(),
@@ -192,30 +210,32 @@ impl Sweep {
             order.opened(session.headless.driver());
         }
         let mut clip_of = |index| -> rara::Result<Clip> {
-            shapes.push(moving.at(position(range, index, self.frames))?);
+            shapes.push(moving.at(index)?);
             let clip = joined(&shapes, op);
             shapes.pop();
             Ok(clip)
         };
         // The first frames, those that cut much and take over, and the last: together they need every shader.
-        let middle = self.frames / 2;
-        let first = [0, middle, middle + 1, middle + 2, self.frames - 1]
-            .map(|index| clip_of(index.min(self.frames - 1)));
-        let first = first.into_iter().collect::<rara::Result<Vec<_>>>()?;
+        let (middle, last) = (frames / 2, frames - 1);
+        let first = [0, middle, middle + 1, middle + 2, last].map(|index| index.min(last));
+        let clips = first.map(&mut clip_of).into_iter();
+        let clips = clips.collect::<rara::Result<Vec<_>>>()?;
         if destination.order().is_none() {
-            session.warm_up(first.iter().map(|clip| (&camera, clip, settings)))?;
+            let frames = first.into_iter().zip(&clips);
+            let frames = frames.map(|(index, clip)| (&view_of(index).camera, clip, &settings));
+            session.warm_up(frames)?;
         }
 
         let written = destination.draw("sweeping", profile, (&planned, size), |one| {
             let (index, file) = (one.what, one.file.as_deref());
-            let clip = clip_of(index)?;
+            let (view, clip) = (view_of(index), clip_of(index)?);
             let measured = if self.independent || self.repeat > 1 {
-                session.frame(&camera, &clip, settings, self.repeat)?
+                session.frame(&view.camera, &clip, &settings, self.repeat)?
             } else {
-                FrameSummary::from_frames(&[session.headless.render(&camera, &clip, settings)?])
+                let drawn = session.headless.render(&view.camera, &clip, &settings)?;
+                FrameSummary::from_frames(&[drawn])
             };
-            let plane = moving.plane(position(range, index, self.frames))?;
-            let frame = FrameRecord::new(&view, file, plane.as_ref(), measured);
+            let frame = FrameRecord::new(view, file, moving.plane(index)?.as_ref(), measured);
             let stored = file.map(|_| session.headless.read_back()).transpose()?;
             Ok(RenderedPicture {
                 picture: stored.map(Pixels::Stored),
@@ -234,52 +254,5 @@ impl Sweep {
             .with_near_cut(taken);
         session.headless.close()?;
         Ok(report.print(self.pictures.answer(), true, &written.files)?)
-    }
-}
-
-enum SweepTarget {
-    /// A plane of this unit normal, across the scene.
-    Plane(DVec3),
-    /// A region that moves from the first to the other.
-    Region(Expression, Expression),
-}
-
-/// The most steps that are tried before the scene is read.
-const MOST_TRIED: u32 = 1000;
-
-impl SweepTarget {
-    /// The clip in a position: of a plane along its normal, of a region the share of its way.
-    fn at(&self, position: f64) -> rara::Result<Expression> {
-        Ok(match self {
-            Self::Plane(normal) => Expression::Shape(Plane::new(*normal, -position)?.into()),
-            Self::Region(from, to) => from.between(to, position)?,
-        })
-    }
-
-    fn plane(&self, position: f64) -> rara::Result<Option<Plane>> {
-        match self {
-            Self::Plane(normal) => Plane::new(*normal, -position).map(Some),
-            Self::Region(..) => Ok(None),
-        }
-    }
-}
-
-/// The position in one frame: both ends included, the middle when there is one frame only.
-fn position((from, to): (f64, f64), index: u32, frames: u32) -> f64 {
-    match frames {
-        1 => (from + to) / 2.0,
-        _ => from + (to - from) * f64::from(index) / f64::from(frames - 1),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn steps_are_equal_and_reach_both_ends() {
-        let positions = [0, 1, 2, 3, 4].map(|i| position((-1.0, 3.0), i, 5));
-        assert_eq!(positions, [-1.0, 0.0, 1.0, 2.0, 3.0]);
-        assert_eq!(position((-1.0, 3.0), 0, 1), 1.0);
     }
 }

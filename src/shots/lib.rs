@@ -18,6 +18,7 @@
 
 #![forbid(unsafe_code)]
 
+mod ease;
 mod framing;
 mod lens;
 mod orbit;
@@ -26,6 +27,7 @@ mod section;
 mod slice;
 mod spline;
 
+pub use ease::Ease;
 pub use framing::{Framing, Outside, Visible};
 pub use lens::{Depths, Lens, UP, upright};
 pub use orbit::Orbit;

@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use glam::{DMat3, DVec3};
 use rara::Camera;
 
+use super::ease::Ease;
 use super::lens::UP;
 
 /// An orbit: a number of cameras on a circle around a point.
@@ -12,12 +13,23 @@ use super::lens::UP;
 pub struct Orbit {
     turns: f64,
     frames: u32,
+    ease: Ease,
 }
 
 impl Orbit {
     /// Makes an orbit of this many turns and pictures. The camera moves to the right, or to the left if `turns` is below zero.
     pub fn new(turns: f64, frames: u32) -> Self {
-        Self { turns, frames }
+        let ease = Ease::None;
+        Self {
+            turns,
+            frames,
+            ease,
+        }
+    }
+
+    /// Returns the same orbit at another pace.
+    pub fn ease(self, ease: Ease) -> Self {
+        Self { ease, ..self }
     }
 
     /// Returns the number of pictures.
@@ -31,7 +43,8 @@ impl Orbit {
         let axis = axis.normalize_or(UP);
         let closed = self.turns.fract() == 0.0;
         let places = (0..self.frames).map(|index| {
-            let turn = self.turns * super::share(index, self.frames, closed);
+            let way = self.ease.way(super::share(index, self.frames, closed));
+            let turn = self.turns * way;
             // Whole turns lead back to the very same place.
             let turned = DMat3::from_axis_angle(axis, TAU * turn.fract());
             camera

@@ -9,6 +9,8 @@ use std::ops::{Add, Mul};
 use glam::{DMat3, DQuat, DVec3, DVec4};
 use rara::{Camera, Error, Result};
 
+use super::ease::Ease;
+
 /// Steps between two cameras in which the way is measured.
 const STEPS: usize = 64;
 
@@ -95,6 +97,7 @@ pub struct Spline {
     ways: Vec<f64>,
     /// What all cameras have in common.
     camera: Camera,
+    ease: Ease,
 }
 
 impl Spline {
@@ -150,6 +153,7 @@ impl Spline {
             closed,
             ways: vec![0.0],
             camera,
+            ease: Ease::None,
         };
         let (mut way, mut last) = (0.0, spline.at(0, 0.0));
         for step in 1..=pieces * STEPS {
@@ -162,9 +166,16 @@ impl Spline {
         Ok(spline)
     }
 
-    /// Returns this many cameras at an even pace along the path. A closed path ends one picture before its beginning.
+    /// Returns the same path at another pace.
+    pub fn ease(self, ease: Ease) -> Self {
+        Self { ease, ..self }
+    }
+
+    /// Returns this many cameras along the path, at an even pace if no other was given. A closed path ends one picture before
+    /// its beginning.
     pub fn cameras(&self, frames: u32) -> Vec<Camera> {
-        let place = |index| self.camera_at(super::share(index, frames, self.closed));
+        let share = |index| self.ease.way(super::share(index, frames, self.closed));
+        let place = |index| self.camera_at(share(index));
         (0..frames).map(place).collect()
     }
 

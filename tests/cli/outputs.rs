@@ -154,7 +154,7 @@ fn parts_together_are_the_whole() {
         ("--json --path orbit --part 3", "as 3/10"),
         (
             "--json --part 1/2",
-            "--part changes nothing without --path, --view or --section",
+            "--part changes nothing without --path, --view, --section or --from",
         ),
         (
             "-o @/a.apng --path orbit --part 1/2",

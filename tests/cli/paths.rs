@@ -281,3 +281,69 @@ fn a_path_of_nerfstudio_has_its_crop_and_its_pace() {
         "{said}"
     );
 }
+
+/// A clip moves with the camera, alike by both commands, and each picture is that of its camera and its clip.
+#[test]
+fn a_clip_moves_along_with_the_camera() {
+    let here = folder("moved_along");
+    scene(&here);
+    let flags = "--path orbit:0.5 --from plane:z=20% --to plane:z=80% --size 48x32";
+    let picture = |name: &str| fs::read(here.join(name)).expect("a picture");
+    let words = format!(
+        "render @/scene.ply -o @/r_{{}}.png {flags} --frames 5 --save-camera @/saved.json --save-clip @/x.json"
+    );
+    refused(&line(&here, &words), 2, "there is no clip to save");
+    done(line(&here, &words.replace(" --save-clip @/x.json", "")));
+    done(line(
+        &here,
+        &format!("sweep @/scene.ply -o @/s_{{}}.png {flags} --frames 5"),
+    ));
+    let clips = ["20", "35", "50", "65", "80"];
+    for (at, share) in clips.into_iter().enumerate() {
+        let one = format!(
+            "render @/scene.ply -o @/one.png --camera @/saved.json --view {at} --clip plane:z={share}%"
+        );
+        let words = one.replace("--camera ", "--cameras ");
+        done(line(&here, &words));
+        assert!(
+            picture("one.png") == picture(&format!("r_{at}.png")),
+            "{at}"
+        );
+        assert!(
+            picture(&format!("s_{at}.png")) == picture(&format!("r_{at}.png")),
+            "{at}"
+        );
+    }
+    done(line(
+        &here,
+        &format!("sweep @/scene.ply -o @/e_{{}}.png {flags} --frames 5 --ease both"),
+    ));
+    let alike = [0, 1, 2, 3, 4]
+        .map(|at| picture(&format!("e_{at}.png")) == picture(&format!("s_{at}.png")));
+    assert_eq!(alike, [true, false, true, false, true], "slow at both ends");
+    let report = document(line(
+        &here,
+        "sweep @/scene.ply --clip-normal 0,0,1 --cameras @/saved.json --path cameras:0,2,4 --size 48x32 --json",
+    ));
+    assert_eq!(frames(&report).len(), 3);
+    for (words, says) in [
+        (
+            "render @/scene.ply -o @/a.png --from plane:1,0,0,0 --to plane:1,0,0,1",
+            "give a path",
+        ),
+        (
+            "render @/scene.ply -o @/a_{}.png --path orbit --section z=0.4",
+            "give one of them",
+        ),
+        (
+            "render @/scene.ply -o @/a.png --ease in",
+            "--ease changes nothing without",
+        ),
+        (
+            "sweep @/scene.ply -o @/a --from plane:1,0,0,0 --to sphere:0,0,0,1 --path orbit",
+            "nothing lies between",
+        ),
+    ] {
+        refused(&line(&here, words), 2, says);
+    }
+}

@@ -46,7 +46,8 @@ const NEEDS: &[(&str, Need)] = &[
     ("cameras", Flag(&["scene_files"])),
     ("undistort", Flag(&["cameras", "camera", "view", "path"])),
     ("size", Other("views", "0")),
-    ("frames", Flag(&["path"])),
+    ("frames", Flag(&["path", "clip_normal", "from"])),
+    ("ease", Flag(&["path", "clip_normal", "from"])),
     // Sections.
     ("section_thickness", Flag(&["section"])),
     ("section_thickness", Without("slice")),

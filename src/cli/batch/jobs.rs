@@ -1,4 +1,4 @@
-//! Jobs: commands as JSON, by the names of their flags, and many of them as one with `for`.
+//! Jobs: commands as JSON, by the names of their flags, and many of them as one with `for` and `zip`.
 
 use std::ffi::OsString;
 use std::fs;
@@ -94,34 +94,33 @@ fn collect(
     }
 }
 
-/// The jobs that a job with `for` stands for: each value of each name, the last name the fastest.
+/// The values of names, for one job.
+type Set<'a> = Vec<(&'a str, Value)>;
+
+/// The jobs that a job with `for` and `zip` stands for: each value of each name of `for`, the last name the fastest, and faster
+/// the values of `zip`, whose names change together.
 fn templates(mut job: Map<String, Value>) -> Result<Vec<Map<String, Value>>, String> {
-    let names = match job.remove("for") {
-        None => return Ok(vec![job]),
-        Some(Value::Object(names)) => names,
-        Some(other) => {
-            return Err(format!(
-                "\"for\" is an object of names and values, and not {other}"
-            ));
-        }
-    };
+    let [names, together] = ["for", "zip"].map(|key| match job.remove(key) {
+        None => Ok(Map::new()),
+        Some(Value::Object(names)) => Ok(names),
+        Some(other) => Err(format!(
+            "\"{key}\" is an object of names and values, and not {other}"
+        )),
+    });
+    let (names, together) = (names?, together?);
+    if let Some(name) = together.keys().find(|name| names.contains_key(*name)) {
+        return Err(format!("{name} is a name in \"for\" and in \"zip\""));
+    }
     let mut all = vec![Vec::new()];
     for (name, values) in &names {
         let values = series(values).map_err(|why| format!("\"for\", {name}: {why}"))?;
-        if all.len().saturating_mul(values.len()) > MOST {
-            return Err(format!("\"for\" makes more than {MOST} jobs"));
-        }
-        let mut longer = Vec::new();
-        for one in &all {
-            for value in &values {
-                let mut with: Vec<(&str, Value)> = one.clone();
-                with.push((name, value.clone()));
-                longer.push(with);
-            }
-        }
-        all = longer;
+        let values = values.into_iter().map(|value| vec![(&name[..], value)]);
+        all = product(&all, &values.collect::<Vec<_>>())?;
     }
-    let filled = |set: Vec<(&str, Value)>| {
+    if !together.is_empty() {
+        all = product(&all, &zipped(&together)?)?;
+    }
+    let filled = |set: Set<'_>| {
         let value = substituted(&Value::Object(job.clone()), &set)?;
         match value {
             Value::Object(job) => Ok(job),
@@ -129,6 +128,39 @@ fn templates(mut job: Map<String, Value>) -> Result<Vec<Map<String, Value>>, Str
         }
     };
     all.into_iter().map(filled).collect()
+}
+
+/// Each of some sets with each of others, the others the faster.
+fn product<'a>(all: &[Set<'a>], with: &[Set<'a>]) -> Result<Vec<Set<'a>>, String> {
+    if all.len().saturating_mul(with.len()) > MOST {
+        return Err(format!("\"for\" and \"zip\" make more than {MOST} jobs"));
+    }
+    let pairs = all
+        .iter()
+        .flat_map(|one| with.iter().map(move |other| (one, other)));
+    Ok(pairs
+        .map(|(one, other)| [&one[..], other].concat())
+        .collect())
+}
+
+/// The sets of names that change together.
+fn zipped(names: &Map<String, Value>) -> Result<Vec<Set<'_>>, String> {
+    let mut all: Option<(&str, Vec<Set<'_>>)> = None;
+    for (name, values) in names {
+        let values = series(values).map_err(|why| format!("\"zip\", {name}: {why}"))?;
+        let (first, sets) = all.get_or_insert_with(|| (name, vec![Vec::new(); values.len()]));
+        if sets.len() != values.len() {
+            return Err(format!(
+                "\"zip\" changes its names together, and {first} has {} and {name} {}: give both as many values",
+                output::counted(sets.len() as u64, "value"),
+                values.len()
+            ));
+        }
+        for (set, value) in sets.iter_mut().zip(values) {
+            set.push((name, value));
+        }
+    }
+    Ok(all.map_or(Vec::new(), |(_, sets)| sets))
 }
 
 /// The values of a list, of `0..9` (whole numbers, both ends included) or of `0..1:11` (so many numbers in equal steps).
@@ -211,7 +243,7 @@ fn filled(text: &str, set: &[(&str, Value)]) -> Result<String, String> {
         let (Some(value), Some(digits)) = (value, digits) else {
             let names: Vec<_> = set.iter().map(|(name, _)| *name).collect();
             return Err(format!(
-                "'{text}' asks for '{name}', and \"for\" has {}",
+                "'{text}' asks for '{name}', and \"for\" and \"zip\" have {}",
                 names.join(", ")
             ));
         };

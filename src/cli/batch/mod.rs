@@ -41,7 +41,8 @@ are relative to the working directory.
 
 \"for\": {\"z\": \"0..100:101\", \"scan\": [\"a\", \"b\"]} makes one job for each combination of its values. 0..9 stands \
 for the whole numbers from 0 to 9, and 0..1:11 for 11 numbers from 0 to 1 in equal steps. In the other keys of the job, \
-${z} stands for the value of z, and ${z:03} for the value with leading zeros.
+${z} stands for the value of z, and ${z:03} for the value with leading zeros. \"zip\": {\"z\": \"0..100:5\", \"view\": \
+\"0..4\"} makes one job for each step of its names, which change together.
 
 Workers record finished pictures in the folder of --state and do not draw them again. Workers on several machines may \
 share this folder. In an array job of Slurm or SGE, each task draws its share. Tasks of Kubernetes and PBS do so too if \

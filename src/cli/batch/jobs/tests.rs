@@ -35,6 +35,11 @@ fn ranges_and_templates_make_many_of_one() {
     let third = "render --clip=plane:z=0.0% --output=b_009.png --size=4x4 -- b.ply";
     assert_eq!(made[2], third);
     assert_eq!(made[8], "sweep --output=c --size=8x8 -- c");
+    let job = json!({"scene": "${s}", "output": "${s}_${v}", "clip": "plane:z=${z}%",
+        "for": {"s": ["a", "b"]}, "zip": {"v": "0..2", "z": ["10", "20", "40"]}});
+    let line = |(s, v, z)| format!("render --clip=plane:z={z}% --output={s}_{v} -- {s}");
+    let made = ["a", "b"].map(|s| [(s, 0, 10), (s, 1, 20), (s, 2, 40)].map(line));
+    assert_eq!(lines(job), Ok(made.concat()));
     let numbers = |range: &str| series(&range.into()).expect("a range");
     assert_eq!(numbers("3..1"), [3, 2, 1].map(Value::from));
     assert_eq!(numbers("0..1:11")[3], json!(0.3));
@@ -73,8 +78,16 @@ fn what_is_no_job_is_refused_by_its_number_with_the_remedy() {
             ["job 2", "more than"],
         ),
         (
+            with("zip", json!({"a": "1..3", "b": [1, 2]})),
+            ["a has 3 values", "as many"],
+        ),
+        (
+            json!([{"scene": "a", "output": "b", "for": {"z": "1..2"}, "zip": {"z": "1..2"}}]),
+            ["z is a name", "\"zip\""],
+        ),
+        (
             json!([{"scene": "a", "output": "${no}", "for": {"z": "1..2"}}]),
-            ["'no'", "has z"],
+            ["'no'", "have z"],
         ),
         (
             json!([{"scene": "a", "output": "${z", "for": {"z": "1..2"}}]),

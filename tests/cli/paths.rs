@@ -287,7 +287,7 @@ fn a_path_of_nerfstudio_has_its_crop_and_its_pace() {
 fn a_clip_moves_along_with_the_camera() {
     let here = folder("moved_along");
     scene(&here);
-    let flags = "--path orbit:0.5 --from plane:z=20% --to plane:z=80% --size 48x32";
+    let flags = "--path orbit:0.5 --eye 0,-1,-4 --target 0,0,0 --from plane:z=20% --to plane:z=80% --size 48x32";
     let picture = |name: &str| fs::read(here.join(name)).expect("a picture");
     let words = format!(
         "render @/scene.ply -o @/r_{{}}.png {flags} --frames 5 --save-camera @/saved.json --save-clip @/x.json"

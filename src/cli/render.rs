@@ -27,7 +27,7 @@ use super::save_camera::SaveCameraArgs;
 use super::scenes::SceneArgs;
 use super::section::{Section, SectionArgs, Sections};
 use super::session::{Repeat, Session};
-use super::slice::{Cut, SliceArgs, Slicer};
+use super::slice::{self, Cut, SliceArgs, Slicer};
 use super::values;
 use super::views::{NamedView, Views};
 
@@ -248,6 +248,11 @@ impl Render {
         self.slice.check(&settings)?;
         let sections = self.section.meant(&self.frame.camera, &self.frame.clip)?;
         let panorama = self.panorama.meant(self.frame.camera.size())?;
+        if panorama.is_some() && self.slice.changes_pictures() {
+            return Err(Failure::Usage(
+                "--outline and --rim mark what one picture shows, and --panorama is made of six: leave out one of them".into(),
+            ));
+        }
         if let Some(panorama) = &panorama {
             let ahead = !self.path.moves();
             self.frame.camera.look_around(panorama.size(), ahead);
@@ -415,7 +420,10 @@ impl Render {
             Some(_) => Repeat::Following,
             None => self.repeat(planned.len() * faces),
         };
-        let mut slicer = Slicer::new(&self.slice, &scene, self.frame.device.meant());
+        let is_section = planned.iter().any(|one| one.what.section.is_some());
+        let device = self.frame.device.meant();
+        let mut slicer = Slicer::new(&self.slice, &scene, is_section, device);
+        slicer.check()?;
         let mut shown = 0;
         let written = destination.draw("rendering", profile, (&planned, size), |one| {
             if let Some(at) = one.what.moment.filter(|at| *at != shown) {
@@ -455,11 +463,18 @@ impl Render {
             record.is_faint = is_faint;
             let mut drawn = RenderedPicture::from(record);
             if file.is_some() {
-                drawn.picture = Some(match shot.cut().filter(|_| slicer.has_cues()) {
-                    None => Pixels::Stored(session.headless.read_back()?),
-                    Some(cut) => {
+                drawn.picture = Some(match self.slice.changes_pictures() {
+                    false => Pixels::Stored(session.headless.read_back()?),
+                    true => {
                         let mut picture = session.headless.picture()?;
-                        slicer.draw_cues(&mut picture, (view, cut, settings))?;
+                        if sliced.is_some() {
+                            slicer.finish(&mut picture, settings);
+                        }
+                        let cuts = match shot.cut() {
+                            Some(cut) => vec![cut.clone()],
+                            None => slice::faces(clip, &view.camera)?,
+                        };
+                        slicer.draw_cues(&mut picture, (view, &cuts, settings))?;
                         Pixels::Decoded(picture)
                     }
                 });

@@ -1,11 +1,15 @@
 //! `--slice`, `--outline` and `--rim`: what lies on a section's plane.
 
 use clap::Args;
-use rara::{Clip, Cue, Cues, HeadlessDesc, Picture, Plane, Raster, Scene, Settings, Show};
+use rara::{
+    Camera, Clip, ClipOp, Cue, Cues, HeadlessDesc, Layer, Picture, Plane, Projection, Raster,
+    Scene, Settings, Show,
+};
 use rara_shots::Slice;
 
 use super::combine::FrameSummary;
 use super::failure::Failure;
+use super::layer_names;
 use super::session::{Repeat, Session};
 use super::values;
 use super::views::NamedView;
@@ -20,9 +24,18 @@ pub(super) struct SliceArgs {
     /// of the splats has no effect.
     #[arg(long, conflicts_with = "aov")]
     slice: bool,
-    /// Draw a line around each cut surface
-    #[arg(long, value_name = "R,G,B", value_parser = values::colour)]
-    outline: Option<[f32; 3]>,
+    /// Make the cut surface of a slice opaque
+    ///
+    /// Without this flag, a pixel has the alpha of the splats on the plane. With it, what has at least the alpha of --cut-level is
+    /// opaque, and what has less fades towards the edge.
+    #[arg(long)]
+    opaque: bool,
+    /// Draw a line around the cut surface, or with NAME= around that of a layer (repeatable)
+    ///
+    /// Without --section, the line goes around each face that planes, slabs and boxes have cut and that the camera sees. Give
+    /// several layers lines of their own by --outline skin=red --outline bone=white.
+    #[arg(long, value_name = "[NAME=]COLOUR", value_parser = outline)]
+    outline: Vec<Outline>,
     /// Width of the line of --outline, pixels
     #[arg(long, value_name = "PX", value_parser = values::positive, default_value_t = 2.0)]
     outline_width: f32,
@@ -38,6 +51,22 @@ pub(super) struct SliceArgs {
     /// there.
     #[arg(long, value_name = "ALPHA", value_parser = values::share, default_value_t = 0.1)]
     cut_level: f32,
+}
+
+/// A line around the cut surface of a layer, or of all together.
+#[derive(Debug, Clone, PartialEq)]
+struct Outline {
+    layer: Option<String>,
+    colour: [f32; 3],
+}
+
+fn outline(text: &str) -> Result<Outline, String> {
+    let (layer, colour) = match text.rsplit_once('=') {
+        Some((layer, colour)) => (Some(layer.to_owned()), colour),
+        None => (None, text),
+    };
+    let colour = values::colour(colour)?;
+    Ok(Outline { layer, colour })
 }
 
 /// A plane that is sliced, and the clip of what lies on it.
@@ -66,17 +95,65 @@ impl SliceArgs {
 
     /// True when something is made of the scene's Gaussians once the scene is on the device.
     pub(super) fn needs_gaussians(&self) -> bool {
-        self.slice || self.cues().is_some()
+        self.slice || self.has_cues()
     }
 
-    fn cues(&self) -> Option<Cues> {
-        let mut cues = Cues::default();
-        let cue = |width| move |colour| Cue { colour, width };
-        cues.level = self.cut_level;
-        cues.outline = self.outline.map(cue(self.outline_width));
-        cues.rim = self.rim.map(cue(self.rim_width));
-        (self.outline.is_some() || self.rim.is_some()).then_some(cues)
+    /// True when pictures are changed once they are drawn.
+    pub(super) fn changes_pictures(&self) -> bool {
+        self.opaque || self.has_cues()
     }
+
+    /// True when the edges of cut surfaces are marked.
+    pub(super) fn has_cues(&self) -> bool {
+        !self.outline.is_empty() || self.rim.is_some()
+    }
+
+    /// The marks around the cut surface of each layer that has some of its own, or of all together.
+    fn cues(&self) -> impl Iterator<Item = (Option<&str>, Cues)> {
+        let cue = |width| move |colour| Cue { colour, width };
+        let mut of_all = Cues::default();
+        of_all.level = self.cut_level;
+        of_all.rim = self.rim.map(cue(self.rim_width));
+        let lines = self.outline.iter().map(move |line| {
+            let mut cues = of_all;
+            cues.rim = None;
+            cues.outline = Some(cue(self.outline_width)(line.colour));
+            (line.layer.as_deref(), cues)
+        });
+        let rim = of_all.rim.map(|_| (None, of_all));
+        rim.into_iter().chain(lines)
+    }
+}
+
+/// The faces that a clip cuts and a camera sees.
+pub(super) fn faces(clip: &Clip, camera: &Camera) -> Result<Vec<Cut>, Failure> {
+    let planes = clip.surfaces.iter().map(|surface| surface.as_plane());
+    let planes: Option<Vec<Plane>> = planes.collect();
+    let planes = planes.filter(|_| clip.parts.is_empty());
+    let Some(planes) = planes.filter(|planes| clip.op == ClipOp::And || planes.len() == 1) else {
+        return Err(Failure::Usage(
+            "--outline and --rim mark the faces that planes, slabs and boxes cut together: leave out other shapes and --clip-op or, \
+             or look at a --section"
+                .into(),
+        ));
+    };
+    let faces_us = |plane: &Plane| match camera.projection {
+        Projection::Perspective => plane.distance(camera.eye) < 0.0,
+        Projection::Orthographic => plane.normal().dot(camera.rotation.row(2)) > 0.0,
+    };
+    let face = |(at, plane): (usize, &Plane)| {
+        let mut others = planes.clone();
+        others.remove(at);
+        Cut {
+            plane: *plane,
+            rest: Clip::of(others, ClipOp::And),
+        }
+    };
+    let seen = planes.iter().enumerate();
+    Ok(seen
+        .filter(|(_, plane)| faces_us(plane))
+        .map(face)
+        .collect())
 }
 
 pub(super) struct Slicer<'a> {
@@ -88,12 +165,31 @@ pub(super) struct Slicer<'a> {
 }
 
 impl<'a> Slicer<'a> {
-    pub(super) fn new(args: &'a SliceArgs, scene: &Scene<'a>, device: HeadlessDesc) -> Self {
+    /// Makes slices of a scene; `is_section` says that the planes of sections cut it, which cut also layers with clips of their
+    /// own.
+    pub(super) fn new(
+        args: &'a SliceArgs,
+        scene: &Scene<'a>,
+        is_section: bool,
+        device: HeadlessDesc,
+    ) -> Self {
         Self {
             args,
-            scene: scene.clone(),
+            scene: of_layers(scene, |layer| is_section || layer.clip().is_none()),
             device,
             session: None,
+        }
+    }
+
+    /// Checks that there are the layers that flags name.
+    pub(super) fn check(&self) -> Result<(), Failure> {
+        let names = || self.scene.layers().iter().map(Layer::name);
+        let unknown = |(layer, _): (Option<&'a str>, Cues)| {
+            layer.filter(|layer| !names().any(|name| name == *layer))
+        };
+        match self.args.cues().find_map(unknown) {
+            Some(layer) => Err(layer_names::no_layer("--outline", layer, names())),
+            None => Ok(()),
         }
     }
 
@@ -108,41 +204,53 @@ impl<'a> Slicer<'a> {
         session
             .headless
             .load_as(slice.scene(), settings.precision.sh)?;
-        let shown = settings.show(Show::Mean);
+        let mut shown = settings.show(Show::Mean);
+        if self.args.opaque {
+            shown = shown.background(None);
+        }
         Ok(session.measured_frame(&view.camera, &cut.rest, &shown, repeat)?)
     }
 
-    /// Draws the cues onto the picture of a section, if there are any.
+    /// Makes the cut surface opaque in the picture of a slice, if it is to be.
+    pub(super) fn finish(&self, picture: &mut Picture, settings: &Settings) {
+        if self.args.opaque {
+            picture.make_opaque(self.args.cut_level);
+            if let Some(background) = settings.background {
+                picture.put_before(background);
+            }
+        }
+    }
+
+    /// Draws the cues onto a picture of these cut surfaces.
     pub(super) fn draw_cues(
         &mut self,
         picture: &mut Picture,
-        (view, cut, settings): (&NamedView, &Cut, &Settings),
+        (view, cuts, settings): (&NamedView, &[Cut], &Settings),
     ) -> Result<(), Failure> {
-        let Some(cues) = self.args.cues() else {
-            return Ok(());
-        };
-        let slice = Slice::new(&self.scene, &cut.plane);
-        let scene = slice.scene();
         let sh = settings.precision.sh;
-        let mut session = match self.session.take() {
-            Some(mut session) => {
-                session.headless.load_as(&scene, sh)?;
-                session
-            }
-            None => Session::open(&self.device, &scene, sh)?,
-        };
         // The picture may be drawn in any way; its slice is made by tiles alone.
         let shown = settings
             .show(Show::Mean)
             .raster(Raster::Auto)
             .background(None);
-        let slice = session.picture(&view.camera, &cut.rest, &shown)?;
-        self.session = Some(session);
-        Ok(picture.draw_cues(&slice, &cues)?)
-    }
-
-    pub(super) fn has_cues(&self) -> bool {
-        self.args.cues().is_some()
+        for cut in cuts {
+            let slice = Slice::new(&self.scene, &cut.plane);
+            for (layer, cues) in self.args.cues() {
+                let is_meant = |of: &Layer<'_>| layer.is_none_or(|name| of.name() == name);
+                let scene = of_layers(&slice.scene(), is_meant);
+                let mut session = match self.session.take() {
+                    Some(mut session) => {
+                        session.headless.load_as(&scene, sh)?;
+                        session
+                    }
+                    None => Session::open(&self.device, &scene, sh)?,
+                };
+                let slice = session.picture(&view.camera, &cut.rest, &shown)?;
+                self.session = Some(session);
+                picture.draw_cues(&slice, &cues)?;
+            }
+        }
+        Ok(())
     }
 
     /// Frees what was opened for cues.
@@ -150,4 +258,15 @@ impl<'a> Slicer<'a> {
         self.session
             .map_or(Ok(()), |session| Ok(session.headless.close()?))
     }
+}
+
+/// A scene of whose layers these alone are shown.
+fn of_layers<'a>(scene: &Scene<'a>, is_meant: impl Fn(&Layer<'_>) -> bool) -> Scene<'a> {
+    let layers = scene.layers().iter().map(|layer| {
+        let state = layer.state();
+        layer
+            .clone()
+            .with(state.visible(state.visible && is_meant(layer)))
+    });
+    layers.collect()
 }

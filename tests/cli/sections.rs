@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::Path;
 
+use rara::Picture;
 use serde_json::Value;
 
 use super::{document, done, folder, line, refused, scene};
@@ -234,6 +235,25 @@ fn slices_show_the_plane_and_cues_its_edge() {
     let series = format!("render @/scene.ply -o @/s{{}}.png {SIZE} --slice --outline 1,0,0");
     done(line(&here, &format!("{series} --section z=0.2..0.8:3")));
     assert!((0..3).all(|number| here.join(format!("s{number}.png")).is_file()));
+    // The middle of the slice is opaque, and what shows nothing stays empty.
+    let alphas = |flags: &str| {
+        drawn(&here, &format!("{section} --slice {flags}"));
+        let picture = Picture::load(here.join("drawn.exr")).expect("a picture");
+        let counted = |least: f32| picture.pixels.iter().filter(|p| p[3] > least).count();
+        [counted(0.0), counted(0.999)]
+    };
+    let [before, after] = ["", "--opaque"].map(alphas);
+    assert_eq!(before[0], after[0]);
+    assert!(
+        20 * before[1] < after[1] && 3 * after[1] > after[0],
+        "{before:?} {after:?}"
+    );
+    // A box without a section has lines around its faces; both layers of a scene have lines of their own.
+    let boxed = "--clip box:0,0,0,.5,.5,.5";
+    let whole = drawn(&here, boxed);
+    let outlined = drawn(&here, &format!("{boxed} --outline 1,1,0"));
+    assert!(whole != outlined);
+    assert!(outlined == drawn(&here, &format!("{boxed} --outline scene=1,1,0")));
     for (words, what) in [
         ("render x.ply -o a.png --slice", "--section"),
         (
@@ -255,6 +275,19 @@ fn slices_show_the_plane_and_cues_its_edge() {
         (
             "render x.ply -o a.png --section z=.5 --outline 1,1,2",
             "between 0 and 1",
+        ),
+        (
+            "render @/scene.ply -o @/a.png --section z=.5 --outline skin=red",
+            "no layer is called 'skin'",
+        ),
+        (
+            "render @/scene.ply -o @/a.png --clip sphere:0,0,0,1 --outline red",
+            "planes, slabs and boxes",
+        ),
+        ("render x.ply -o a.png --outline red", "--section"),
+        (
+            "render x.ply -o a.png --panorama --eye 0,0,0 --clip plane:1,0,0,0 --rim red",
+            "--panorama is made of six",
         ),
     ] {
         refused(&line(&here, words), 2, what);

@@ -53,11 +53,18 @@ const NEEDS: &[(&str, Need)] = &[
     ("section_thickness", Without("slice")),
     ("section_scale", Flag(&["section"])),
     ("slice", Flag(&["section"])),
-    ("outline", Flag(&["section"])),
+    ("opaque", Flag(&["slice"])),
+    (
+        "outline",
+        Flag(&["section", "clip", "clip_expr", "clip_file", "from"]),
+    ),
     ("outline_width", Flag(&["outline"])),
-    ("rim", Flag(&["section"])),
+    (
+        "rim",
+        Flag(&["section", "clip", "clip_expr", "clip_file", "from"]),
+    ),
     ("rim_width", Flag(&["rim"])),
-    ("cut_level", Flag(&["outline", "rim"])),
+    ("cut_level", Flag(&["outline", "rim", "opaque"])),
     // The clip. A file may hold several shapes, and sections refuse `or` themselves.
     (
         "clip_op",

@@ -80,6 +80,32 @@ impl Picture {
     }
 }
 
+impl Picture {
+    /// Makes the cut surface that this slice shows opaque: all that has at least an alpha of `level`, 0 to 1. What has less
+    /// fades in proportion, so that the surface keeps a soft edge. The colours stay.
+    pub fn make_opaque(&mut self, level: f32) {
+        for pixel in &mut self.pixels {
+            let alpha = pixel[3];
+            if alpha > 0.0 {
+                let factor = (alpha / level).min(1.0) / alpha;
+                *pixel = pixel.map(|value| value * factor);
+                pixel[3] = pixel[3].min(1.0);
+            }
+        }
+    }
+
+    /// Puts the picture in front of a colour, red, green and blue from 0 to 1.
+    pub fn put_before(&mut self, background: [f32; 3]) {
+        let [r, g, b] = background;
+        for pixel in &mut self.pixels {
+            let rest = 1.0 - pixel[3];
+            for (value, behind) in pixel.iter_mut().zip([r, g, b, 1.0]) {
+                *value += rest * behind;
+            }
+        }
+    }
+}
+
 /// Blends a share of a colour with an alpha over a pixel.
 fn over(pixel: &mut [f32; 4], colour: [f32; 3], share: f32, alpha: f32) {
     let [r, g, b] = colour.map(|c| c * alpha);

@@ -64,6 +64,38 @@ fn distances_are_right_at_the_end_of_a_long_row() {
 }
 
 #[test]
+fn what_is_cut_becomes_opaque_and_its_edge_stays_soft() {
+    let slice = |pixels: &[[f32; 4]]| Picture {
+        width: pixels.len() as u32,
+        height: 1,
+        pixels: pixels.to_vec(),
+    };
+    let mut made = slice(&[
+        [0.0; 4],
+        [0.2, 0.1, 0.0, 0.25],
+        [0.3, 0.6, 0.0, 0.75],
+        [1.0; 4],
+    ]);
+    made.make_opaque(0.5);
+    let expected = [
+        [0.0; 4],
+        [0.4, 0.2, 0.0, 0.5],
+        [0.4, 0.8, 0.0, 1.0],
+        [1.0; 4],
+    ];
+    let near = |[a, b]: [&[f32; 4]; 2]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-6);
+    assert!(made.pixels.iter().zip(&expected).all(|(a, b)| near([a, b])));
+    made.put_before([0.0, 0.0, 1.0]);
+    let expected = [
+        [0.0, 0.0, 1.0, 1.0],
+        [0.4, 0.2, 0.5, 1.0],
+        [0.4, 0.8, 0.0, 1.0],
+        [1.0; 4],
+    ];
+    assert!(made.pixels.iter().zip(&expected).all(|(a, b)| near([a, b])));
+}
+
+#[test]
 fn cues_stay_near_the_edge_and_nothing_is_drawn_without() {
     let slice = disc(64, 20.0);
     let grey = Picture::filled(64, 64, [0.5, 0.5, 0.5, 1.0]);

@@ -21,6 +21,7 @@ mod info;
 mod json_kind;
 mod kept;
 mod layer_clip;
+mod layer_look;
 mod layer_names;
 mod memory;
 mod moving;

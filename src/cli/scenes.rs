@@ -9,7 +9,7 @@ use super::output::{self, counted, say};
 use super::pattern::filled;
 use super::reading::{self, Watch};
 use super::trained::TrainedOptions;
-use super::{layer_clip, place};
+use super::{layer_clip, layer_look, place};
 use clap::Args;
 use rara::scene::Format;
 use rara::scene::layers::{
@@ -59,6 +59,16 @@ pub struct SceneArgs {
     /// clip that a list of layers gives the layer, so that --clip cuts it.
     #[arg(long, value_name = "NAME=EXPRESSION")]
     layer_clip: Vec<String>,
+    /// Multiply the opacities of one layer by a share, as in skin=40% (repeatable)
+    ///
+    /// SHARE is from 0 to 1, or from 0% to 100%. It replaces the opacity that a list of layers gives the layer.
+    #[arg(long, value_name = "NAME=SHARE")]
+    layer_opacity: Vec<String>,
+    /// Mix a colour into one layer, as in bone=gold or bone=#ffe0c0:30% (repeatable)
+    ///
+    /// SHARE, from 0 to 1 or from 0% to 100%, says how much of the colour there is; by default half.
+    #[arg(long, value_name = "NAME=COLOUR[:SHARE]")]
+    layer_tint: Vec<String>,
     /// Read opacities or scales of a .ply as plain values, not as logits or logarithms
     ///
     /// 3DGS stores opacities as logits, and scales as logarithms. Some programs store plain values instead: opacities from 0
@@ -214,6 +224,7 @@ impl SceneArgs {
         let entries = self.entries()?;
         let mut loaded = load(entries, (&self.trained, &self.activated, is_whole), watch)?;
         place::apply(&self.place, &mut loaded)?;
+        layer_look::apply(&self.layer_opacity, &self.layer_tint, &mut loaded)?;
         let flags = [
             ("--hide", &self.hide, false),
             ("--unhide", &self.unhide, true),

@@ -17,12 +17,13 @@ use super::views::NamedView;
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Sections")]
 pub(super) struct SectionArgs {
-    /// Cut across an axis and face the cut: axial=0.4, z=0.1..0.9:9 (repeatable)
+    /// Cut across an axis and face the cut: axial=40%, z=10%..90%:9, z@12.5 (repeatable)
     ///
-    /// AXIS=SHARE cuts at a share, from 0 to 1, of the extent of the robust bounds that rara info prints. AXIS=FROM..TO:COUNT is
-    /// COUNT sections in equal steps. Axes are z or axial, y or coronal, x or sagittal; a leading ! looks from the other side.
-    /// NAME is a plane of a --clip-file; the other clips of this file are then not used. The picture has no perspective.
-    #[arg(long, value_name = "AXIS=SHARE|NAME", value_parser = wanted, allow_hyphen_values = true)]
+    /// AXIS=SHARE cuts at a share, from 0 to 1 or from 0% to 100%, of the extent of the robust bounds that rara info prints.
+    /// AXIS@POSITION cuts at a position along the axis, world units. With FROM..TO:COUNT in place of one of these there are COUNT
+    /// sections in equal steps. Axes are z or axial, y or coronal, x or sagittal. NAME is a plane of a --clip-file; the other
+    /// clips of this file are then not used. A leading ! looks from the other side. The picture has no perspective.
+    #[arg(long, value_name = "AXIS=SHARE|AXIS@POSITION|NAME", value_parser = wanted, allow_hyphen_values = true)]
     section: Vec<SectionRequest>,
     /// Thickness of the kept slab, world units [default: no limit]
     #[arg(long, value_name = "T", value_parser = values::positive, allow_hyphen_values = true)]
@@ -36,13 +37,17 @@ pub(super) struct SectionArgs {
 
 #[derive(Debug, Clone, PartialEq)]
 enum SectionRequest {
-    Across { axis: Axis, shares: Shares },
-    Named(String),
+    /// At shares of the bounds.
+    Across { axis: Axis, shares: Steps },
+    /// At positions in the world.
+    At { axis: Axis, positions: Steps },
+    /// A plane by its name, and whether it is seen from the other side.
+    Named(String, bool),
 }
 
-/// Shares of the bounds, in equal steps.
+/// Numbers in equal steps.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Shares {
+struct Steps {
     from: f64,
     to: f64,
     count: u32,
@@ -51,17 +56,24 @@ struct Shares {
 /// The most sections of one flag.
 const MOST: u32 = 100_000;
 
-impl Shares {
-    fn parse(text: &str) -> Result<Self, String> {
-        let number = |text: &str| match text.trim().parse::<f64>() {
-            Ok(share) if (0.0..=1.0).contains(&share) => Ok(share),
-            _ => Err(format!("'{text}' is no share of the scene from 0 to 1")),
-        };
+/// A share of the scene.
+fn share(text: &str) -> Result<f64, String> {
+    values::exact_share(text.trim())
+        .map_err(|_| format!("'{text}' is not a share of the scene: give 0 to 1, or 0% to 100%"))
+}
+
+/// A position along an axis.
+fn position(text: &str) -> Result<f64, String> {
+    values::finite(text.trim()).map_err(|_| format!("'{text}' is not a position: give a number"))
+}
+
+impl Steps {
+    fn parse(text: &str, number: fn(&str) -> Result<f64, String>) -> Result<Self, String> {
         let Some((from, rest)) = text.split_once("..") else {
-            let share = number(text)?;
+            let only = number(text)?;
             return Ok(Self {
-                from: share,
-                to: share,
+                from: only,
+                to: only,
                 count: 1,
             });
         };
@@ -96,19 +108,27 @@ impl Shares {
 }
 
 fn wanted(text: &str) -> Result<SectionRequest, String> {
+    let at = |name: &str| Axis::parse(name).map(|axis| (axis, &text[name.len() + 1..]));
+    if let Some((axis, positions)) = text.split_once('@').and_then(|(name, _)| at(name)) {
+        let positions = Steps::parse(positions, position)?;
+        return Ok(SectionRequest::At { axis, positions });
+    }
     let Some((name, shares)) = text.split_once('=') else {
         return match text {
-            "" => Err("expected an axis and a share, as axial=0.5, or the name of a plane".into()),
+            "" => Err("expected an axis and a share, as axial=50%, or the name of a plane".into()),
             name if Axis::parse(name).is_some() => Err(format!(
-                "{name} needs a share of the scene, as in {name}=0.5"
+                "{name} needs a share of the scene, as in {name}=50%, or a position, as in {name}@12.5"
             )),
-            name => Ok(SectionRequest::Named(name.into())),
+            name => Ok(match name.strip_prefix('!') {
+                Some(name) => SectionRequest::Named(name.into(), true),
+                None => SectionRequest::Named(name.into(), false),
+            }),
         };
     };
     let axis = Axis::parse(name).ok_or_else(|| {
         format!("'{name}' is no axis; there are axial (z), coronal (y) and sagittal (x), each with a leading ! or without")
     })?;
-    let shares = Shares::parse(shares)?;
+    let shares = Steps::parse(shares, share)?;
     Ok(SectionRequest::Across { axis, shares })
 }
 
@@ -125,6 +145,8 @@ pub(super) struct Sections {
 enum SectionPlan {
     /// A section across an axis, at a share of the bounds along it.
     Across(Axis, f64),
+    /// A section across an axis, at a position along it.
+    At(Axis, f64),
     /// A plane by its name.
     Plane(String, Plane),
 }
@@ -166,7 +188,7 @@ impl SectionArgs {
         let is_named = self
             .section
             .iter()
-            .any(|s| matches!(s, SectionRequest::Named(_)));
+            .any(|s| matches!(s, SectionRequest::Named(..)));
         let (shapes, planes) = if is_named {
             (clip.beside_planes()?, clip.planes()?)
         } else {
@@ -187,11 +209,21 @@ impl SectionArgs {
                             .map(|share| SectionPlan::Across(axis.clone(), share)),
                     );
                 }
-                SectionRequest::Named(name) => {
+                SectionRequest::At { axis, positions } => {
+                    let all = positions.all();
+                    planned.extend(all.map(|at| SectionPlan::At(axis.clone(), at)));
+                }
+                SectionRequest::Named(name, is_turned) => {
                     let before = planned.len();
                     let found = planes.iter().filter(|(of, _)| of == name);
-                    planned
-                        .extend(found.map(|(_, plane)| SectionPlan::Plane(name.clone(), *plane)));
+                    let plane = |plane: &Plane| match is_turned {
+                        true => plane.flipped(),
+                        false => *plane,
+                    };
+                    let sign = if *is_turned { "!" } else { "" };
+                    planned.extend(found.map(|(_, found)| {
+                        SectionPlan::Plane(format!("{sign}{name}"), plane(found))
+                    }));
                     if planned.len() == before {
                         return Err(unknown(name, planes.iter().map(|(name, _)| name.as_str())));
                     }
@@ -249,6 +281,10 @@ impl Sections {
                 SectionPlan::Across(axis, share) => (
                     format!("{}={share}", axis.name),
                     self.seen.across((axis, *share), &bounds, &visible)?,
+                ),
+                SectionPlan::At(axis, at) => (
+                    format!("{}@{at}", axis.name),
+                    self.seen.across_at((axis, *at), &visible)?,
                 ),
                 SectionPlan::Plane(name, plane) => (name.clone(), self.seen.at(*plane, &visible)?),
             };

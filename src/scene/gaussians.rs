@@ -4,6 +4,7 @@ use bytemuck::allocation::try_zeroed_vec;
 use glam::{DVec3, Quat, Vec3};
 
 use super::training::Training;
+use super::{SH_0, picture};
 use rara_base::counted::counted;
 use rara_base::error::{Error, Result};
 
@@ -237,6 +238,25 @@ impl Gaussians {
     /// Returns the spherical harmonics, to change them.
     pub fn sh_mut(&mut self) -> &mut [f32] {
         &mut self.0.sh
+    }
+
+    /// Mixes a colour, red, green and blue from 0 to 1, into that of all Gaussians: with a share of 0 nothing changes, and with 1
+    /// each has this colour from all sides.
+    pub fn tint(&mut self, colour: [f32; 3], share: f32) {
+        let constants = colour.map(|stored| {
+            let seen = match self.training().linear {
+                true => picture::linear_light(stored),
+                false => stored,
+            };
+            ((f64::from(seen) - 0.5) / SH_0) as f32
+        });
+        let numbers = 3 * self.sh_coefficients();
+        for sh in self.0.sh.chunks_exact_mut(numbers) {
+            sh.iter_mut().for_each(|value| *value *= 1.0 - share);
+            for (value, constant) in sh.iter_mut().zip(constants) {
+                *value += share * constant;
+            }
+        }
     }
 
     /// Returns the number of coefficients per colour channel: `(sh_degree + 1)^2`.

@@ -69,6 +69,14 @@ impl Sections {
         visible: &Visible,
     ) -> Result<Section> {
         let at = bounds.min.lerp(bounds.max, share).dot(axis.along);
+        self.across_at((axis, at), visible)
+    }
+
+    /// Returns the section across an axis, at a position along it in world units.
+    ///
+    /// # Errors
+    /// The errors of [`at`](Self::at).
+    pub fn across_at(&self, (axis, at): (&Axis, f64), visible: &Visible) -> Result<Section> {
         let plane = Plane::new(axis.forward, -axis.forward.dot(axis.along) * at)?;
         self.facing(plane, axis.up, visible)
     }

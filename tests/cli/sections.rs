@@ -81,6 +81,8 @@ fn a_section_faces_its_plane() {
             let d = -sign * at;
             let section = format!("--section {flip}{}=0.4 --section-scale 0.0625", names[0]);
             let half = drawn(&here, &format!("{section} --save-camera @/flat.json"));
+            let placed = section.replace("=0.4", &format!("@{at}"));
+            assert!(half == drawn(&here, &placed), "{placed}");
             let file = fs::read(here.join("flat.json")).expect("a camera");
             let saved: Value = serde_json::from_slice(&file).expect("JSON");
             let number = |value: &Value| value.as_f64().expect("a number");
@@ -112,6 +114,17 @@ fn a_section_faces_its_plane() {
         }
     }
     let plain = drawn(&here, "--section z=0.4");
+    assert!(plain == drawn(&here, "--section axial=40%"));
+    let named = r#"[{"name":"low","normal":[0,0,1],"d":0.25}]"#;
+    fs::write(here.join("planes.json"), named).expect("writes");
+    let low = |name: &str| {
+        drawn(
+            &here,
+            &format!("--section {name} --clip-file @/planes.json"),
+        )
+    };
+    assert!(low("low") == drawn(&here, "--section z@-0.25"));
+    assert!(low("!low") == drawn(&here, "--section !z@-0.25"));
     assert!(plain != drawn(&here, "--section z=0.4 --up 1,0,0"));
     // What is up along the view says nothing of the picture.
     assert!(plain == drawn(&here, "--section z=0.4 --up z"));

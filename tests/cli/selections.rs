@@ -3,6 +3,8 @@
 use std::fs;
 use std::path::Path;
 
+use rara::Picture;
+
 use super::{document, done, folder, line, rara, refused, scene};
 
 /// Writes the scene of `from` with a label for each Gaussian, its number modulo 5, in ascii or in binary.
@@ -225,4 +227,51 @@ fn baking_a_divided_file_is_baking_it() {
     assert!(whole == parts, "the same Gaussians in the same order");
     bake("{}.cut.ply", &["--select", "strong=opacity>0.5"]);
     assert!(here.join("strong.cut.ply").exists() && here.join("scene.cut.ply").exists());
+}
+
+/// A layer's opacity and tint are those of a file whose Gaussians have them.
+#[test]
+fn layers_look_as_flags_say() {
+    let here = folder("layer_look");
+    scene(&here);
+    let drawn = |scene: &str, flags: &str| {
+        let words = format!("render {scene} -o @/drawn.exr --size 64x48 {flags}");
+        done(line(&here, &words));
+        fs::read(here.join("drawn.exr")).expect("a picture")
+    };
+    let plain = drawn("@/scene.ply", "");
+    let listed = r#"{"layers":[{"path":"scene.ply","opacity":0.3}]}"#;
+    fs::write(here.join("list.json"), listed).expect("writes");
+    let faint = drawn("@/list.json", "");
+    assert!(faint != plain);
+    for share in ["0.3", "30%"] {
+        assert!(faint == drawn("@/scene.ply", &format!("--layer-opacity scene={share}")));
+    }
+    assert!(plain == drawn("@/list.json", "--layer-opacity scene=1"));
+    let red = drawn("@/scene.ply", "--layer-tint scene=red");
+    assert!(red != plain && red == drawn("@/scene.ply", "--layer-tint scene=1,0,0:50%"));
+    assert!(plain == drawn("@/scene.ply", "--layer-tint scene=red:0"));
+    done(line(
+        &here,
+        "convert @/scene.ply -o @/all_red.ply --layer-tint scene=red:1 --layer-opacity scene=0.5",
+    ));
+    let whole = drawn("@/all_red.ply", "--background 0,0,1");
+    let picture = Picture::load(here.join("drawn.exr")).expect("a picture");
+    assert!(
+        picture.pixels.iter().all(|p| p[1].abs() < 1e-4),
+        "nothing is green"
+    );
+    assert!(whole != red);
+    for (flag, says) in [
+        ("--layer-opacity skin=0.5", "no layer is called 'skin'"),
+        ("--layer-opacity scene=2", "a number from 0 to 1"),
+        ("--layer-opacity 0.5", "a layer's name and = come first"),
+        ("--layer-tint scene=rouge", "--layer-tint scene=rouge"),
+    ] {
+        refused(
+            &line(&here, &format!("render @/scene.ply -o @/a.png {flag}")),
+            2,
+            says,
+        );
+    }
 }

@@ -2,9 +2,13 @@ use super::*;
 
 #[test]
 fn shares_are_one_or_equal_steps() {
-    let shares = |text| Shares::parse(text).map(|shares| shares.all().collect::<Vec<_>>());
+    let shares = |text| Steps::parse(text, share).map(|shares| shares.all().collect::<Vec<_>>());
     assert_eq!(shares("0.4"), Ok(vec![0.4]));
+    assert_eq!(shares("40%"), shares("0.4"));
     assert_eq!(shares("0..1:5"), Ok(vec![0.0, 0.25, 0.5, 0.75, 1.0]));
+    assert_eq!(shares("0%..100%:5"), shares("0..1:5"));
+    let positions = Steps::parse("-3..1:3", position).map(|all| all.all().collect::<Vec<_>>());
+    assert_eq!(positions, Ok(vec![-3.0, -1.0, 1.0]));
     assert_eq!(shares("0.9..0.1:2"), Ok(vec![0.9, 0.1]));
     assert_eq!(shares("0.2..0.4:1"), Ok(vec![0.30000000000000004]));
     for text in [
@@ -27,5 +31,16 @@ fn what_is_no_section_is_refused_with_what_would_be() {
         let error = wanted(text).expect_err(text);
         assert!(error.contains(says), "{text}: {error}");
     }
-    assert_eq!(wanted("skin"), Ok(SectionRequest::Named("skin".into())));
+    assert_eq!(
+        wanted("skin"),
+        Ok(SectionRequest::Named("skin".into(), false))
+    );
+    assert_eq!(
+        wanted("!skin"),
+        Ok(SectionRequest::Named("skin".into(), true))
+    );
+    assert!(matches!(
+        wanted("!z@-1..2:3"),
+        Ok(SectionRequest::At { .. })
+    ));
 }

@@ -89,3 +89,16 @@ fn harmonics_of_another_degree_are_misuse() {
     let mut made = Gaussians::new(arrays()).expect("they fit");
     made.push(Vec3::Y, Vec3::ONE, Quat::IDENTITY, 0.5, &[1.0; 3]);
 }
+
+#[test]
+fn a_tint_goes_from_nothing_to_one_colour_from_all_sides() {
+    let mut made = Gaussians::new(arrays()).expect("they fit");
+    made.tint([1.0, 0.25, 0.0], 0.0);
+    assert_eq!(made.sh_of(1), &[-0.5; 12]);
+    made.tint([1.0, 0.25, 0.0], 0.5);
+    assert_eq!(made.sh_of(1)[3..], [-0.25; 9]);
+    made.tint([1.0, 0.25, 0.0], 1.0);
+    let constant = |of: f64| ((of - 0.5) / SH_0) as f32;
+    assert_eq!(made.sh_of(0)[..3], [1.0, 0.25, 0.0].map(constant));
+    assert_eq!(made.sh_of(0)[3..], [0.0; 9]);
+}

@@ -275,6 +275,10 @@ impl SceneLayers {
         let mut layers = self.layers.into_iter().map(|mut layer| {
             // What single precision cannot hold there is in no picture either.
             let _ = layer.gaussians.place(&layer.state.placement);
+            if layer.state.opacity != 1.0 {
+                let opacities = layer.gaussians.opacities_mut().iter_mut();
+                opacities.for_each(|opacity| *opacity *= layer.state.opacity);
+            }
             layer.gaussians
         });
         let mut merged = layers.next().unwrap_or_default();

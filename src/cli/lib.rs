@@ -20,6 +20,7 @@ mod help;
 mod info;
 mod json_kind;
 mod kept;
+mod labels;
 mod layer_clip;
 mod layer_look;
 mod layer_names;

@@ -12,6 +12,7 @@ use super::failure::Failure;
 use super::film;
 use super::frame::FrameArgs;
 use super::kept::SessionCache;
+use super::labels::LabelArgs;
 use super::memory;
 use super::moving::{Movement, MovingArgs};
 use super::near;
@@ -88,6 +89,8 @@ pub(super) struct Render {
     section: SectionArgs,
     #[command(flatten)]
     slice: SliceArgs,
+    #[command(flatten)]
+    labels: LabelArgs,
     #[command(flatten)]
     path: PathArgs,
     #[command(flatten)]
@@ -248,9 +251,9 @@ impl Render {
         self.slice.check(&settings)?;
         let sections = self.section.meant(&self.frame.camera, &self.frame.clip)?;
         let panorama = self.panorama.meant(self.frame.camera.size())?;
-        if panorama.is_some() && self.slice.changes_pictures() {
+        if panorama.is_some() && (self.slice.changes_pictures() || self.labels.are_drawn()) {
             return Err(Failure::Usage(
-                "--outline and --rim mark what one picture shows, and --panorama is made of six: leave out one of them".into(),
+                "--outline, --rim, --scale-bar and --letters mark what one picture shows, and --panorama is made of six: leave out one of them".into(),
             ));
         }
         if let Some(panorama) = &panorama {
@@ -389,6 +392,9 @@ impl Render {
                 view.camera = levelled(view.camera, up);
             }
         }
+        for shot in &shots {
+            self.labels.check(&shot.view.camera)?;
+        }
         self.save_camera.save(shots.iter().map(|shot| &shot.view))?;
         let called = |shot: &Shot| (shot.view.number, shot.view.name.clone());
         let Some(planned) = destination.left(shots, called)? else {
@@ -463,7 +469,8 @@ impl Render {
             record.is_faint = is_faint;
             let mut drawn = RenderedPicture::from(record);
             if file.is_some() {
-                drawn.picture = Some(match self.slice.changes_pictures() {
+                let is_changed = self.slice.changes_pictures() || self.labels.are_drawn();
+                drawn.picture = Some(match is_changed {
                     false => Pixels::Stored(session.headless.read_back()?),
                     true => {
                         let mut picture = session.headless.picture()?;
@@ -472,9 +479,11 @@ impl Render {
                         }
                         let cuts = match shot.cut() {
                             Some(cut) => vec![cut.clone()],
-                            None => slice::faces(clip, &view.camera)?,
+                            None if self.slice.has_cues() => slice::faces(clip, &view.camera)?,
+                            None => Vec::new(),
                         };
                         slicer.draw_cues(&mut picture, (view, &cuts, settings))?;
+                        self.labels.draw(&mut picture, &view.camera);
                         Pixels::Decoded(picture)
                     }
                 });

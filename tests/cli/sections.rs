@@ -261,6 +261,27 @@ fn slices_show_the_plane_and_cues_its_edge() {
         20 * before[1] < after[1] && 3 * after[1] > after[0],
         "{before:?} {after:?}"
     );
+    // Labels stay at the edges.
+    for (flags, is_low) in [("--scale-bar=mm", true), ("--letters dicom", false)] {
+        let labelled = drawn(&here, &format!("{section} {flags}"));
+        assert!(labelled != plain, "{flags}");
+        let labelled = Picture::load(here.join("drawn.exr")).expect("a picture");
+        drawn(&here, section);
+        let without = Picture::load(here.join("drawn.exr")).expect("a picture");
+        let (width, height) = (labelled.width, labelled.height);
+        for y in 0..height {
+            for x in 0..width {
+                let is_inside = y < height / 2 || !is_low;
+                let is_middle = (width / 3..2 * width / 3).contains(&x);
+                let is_middle = is_middle && (height / 3..2 * height / 3).contains(&y);
+                let is_kept = is_inside && (is_low || is_middle);
+                assert!(
+                    !is_kept || labelled.at(x, y) == without.at(x, y),
+                    "{flags}: {x}, {y}"
+                );
+            }
+        }
+    }
     // A box without a section has lines around its faces; both layers of a scene have lines of their own.
     let boxed = "--clip box:0,0,0,.5,.5,.5";
     let whole = drawn(&here, boxed);
@@ -284,6 +305,14 @@ fn slices_show_the_plane_and_cues_its_edge() {
         (
             "render x.ply -o a.png --section z=.5 --slice --raster mesh",
             "--raster mesh",
+        ),
+        (
+            "render @/scene.ply -o @/a.png --scale-bar",
+            "without perspective",
+        ),
+        (
+            "render x.ply -o a.png --section z=.5 --letters world",
+            "dicom, nifti, axes",
         ),
         (
             "render x.ply -o a.png --section z=.5 --outline 1,1,2",

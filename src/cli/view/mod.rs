@@ -58,7 +58,7 @@ action before the next one begins:
   move X,Y,Z             world units      shape SHAPE          replaces the held shape
   camera orbit, fly, reset, next          plane NX,NY,NZ,D     replaces the held shape
   camera perspective, orthographic        drag DX,DY           the held shape, pixels
-  clip next              of a dropped file
+  clip next              of a dropped file     shape plane, box, sphere   puts one there
   mode none, hard, rara, exact            tilt DX,DY           the held shape, degrees
   screenshot [FILE]                       scale FACTOR         the held shape
   resize WxH                              layer N|NAME [on|off]
@@ -66,7 +66,7 @@ action before the next one begins:
   timings, flags                          outline on, off
   keys on, off                            numbers on, off
   drop FILE                               repeat N ACTION
-  quit"))]
+  quit                                    undo                 the last change of a clip"))]
 pub(super) struct ViewCommand {
     /// File names of screenshots, .png or .exr; {} becomes the number
     #[arg(short, long, value_name = "OUT", default_value = "view_{}.png", value_parser = values::picture_file())]

@@ -38,6 +38,8 @@ pub enum Action {
     NextClip,
     /// Do this with the clip that is edited.
     Held(GripAction),
+    /// Take back the last change of a clip.
+    Undo,
     /// Show a layer or hide it; whichever it is not where that is not said.
     Layer(Which, Option<bool>),
     /// Choose the clip that is edited.
@@ -101,6 +103,17 @@ pub enum Edit {
     Release,
 }
 
+/// The shapes that keys put into the scene.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// A plane that faces the camera.
+    Plane,
+    /// A box.
+    Box,
+    /// A sphere.
+    Sphere,
+}
+
 /// An action on the clip that is edited, or on its held shape.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum GripAction {
@@ -116,6 +129,8 @@ pub enum GripAction {
     Align(DVec3),
     /// Put this shape in its place.
     Set(Shape),
+    /// Put a shape of this kind in its place, where it is, as large as half the scene.
+    Become(Kind),
     /// Move it along its normal, or away from the eye, world units.
     Go(f64),
     /// The same by hundredths of the scene's radius.
@@ -213,7 +228,9 @@ impl FromStr for Action {
             "screenshot" if rest.is_empty() => Self::Screenshot(None),
             "screenshot" => Self::Screenshot(Some(rest.into())),
             "resize" => Self::Resize(size(rest)?),
-            "minimise" | "restore" | "timings" | "flags" | "help" | "quit" if !rest.is_empty() => {
+            "minimise" | "restore" | "timings" | "flags" | "help" | "undo" | "quit"
+                if !rest.is_empty() =>
+            {
                 return Err(format!("{verb} takes nothing, found {rest}"));
             }
             "minimise" => Self::Minimise,
@@ -221,12 +238,13 @@ impl FromStr for Action {
             "timings" => Self::Timings,
             "flags" => Self::Flags,
             "help" => Self::Help,
+            "undo" => Self::Undo,
             "quit" => Self::Quit,
             other => {
                 return Err(format!(
                     "\"{other}\" is no action; there are turn, shift, zoom, move, camera, shape, plane, drag, tilt, \
-                     scale, layer, edit, outline, keys, numbers, drop, mode, screenshot, resize, minimise, restore, \
-                     timings, flags, repeat and quit"
+                     scale, undo, layer, edit, outline, keys, numbers, drop, mode, screenshot, resize, minimise, \
+                     restore, timings, flags, repeat and quit"
                 ));
             }
         };
@@ -245,6 +263,9 @@ fn held(verb: &str, text: &str) -> Result<GripAction, String> {
         "x" => GripAction::Align(DVec3::X),
         "y" => GripAction::Align(DVec3::Y),
         "z" => GripAction::Align(DVec3::Z),
+        "plane" => GripAction::Become(Kind::Plane),
+        "box" => GripAction::Become(Kind::Box),
+        "sphere" => GripAction::Become(Kind::Sphere),
         by if !by.contains(',') && by.starts_with(['+', '-']) => GripAction::Go(number(by)?),
         shape if shape.contains(':') => {
             let shape = shape.parse::<Shape>().map_err(|error| error.to_string())?;
@@ -257,7 +278,7 @@ fn held(verb: &str, text: &str) -> Result<GripAction, String> {
         }
         other => {
             return Err(format!(
-                "{verb} {other}: on, off, flip, next, x, y, z, a step like +0.1, a shape like sphere:0,0,0,1, or a plane's \
+                "{verb} {other}: on, off, flip, next, x, y, z, plane, box, sphere, a step like +0.1, a shape like sphere:0,0,0,1, or a plane's \
                  nx,ny,nz,d is possible"
             ));
         }

@@ -4,9 +4,9 @@ use std::f64::consts::FRAC_1_SQRT_2;
 
 use glam::{DQuat, DVec2, DVec3};
 use rara::clip::Parameter;
-use rara::{Camera, Placement, Projection, Shape};
+use rara::{Camera, Placement, Plane, Projection, Shape};
 
-use super::action::GripAction;
+use super::action::{GripAction, Kind};
 use super::cut::ClipEditor;
 
 impl ClipEditor {
@@ -19,6 +19,7 @@ impl ClipEditor {
             GripAction::Next => self.next(),
             GripAction::Align(axis) => self.align(axis),
             GripAction::Set(shape) => self.set(shape),
+            GripAction::Become(kind) => self.become_a(kind, camera, radius),
             GripAction::Go(by) => self.go(by, camera),
             GripAction::Step(steps) => self.go(0.01 * steps * radius, camera),
             GripAction::Drag(pixels) => self.drag(pixels, camera),
@@ -94,6 +95,23 @@ impl ClipEditor {
         }
         if let [from, to] = ends[..] {
             self.turn(arc((to - from).normalize()));
+        }
+    }
+
+    /// Makes the held shape one of another kind, in a scene of this radius.
+    fn become_a(&mut self, kind: Kind, camera: &Camera, radius: f64) {
+        let (middle, size) = (self.middle(), 0.5 * radius);
+        let made = match kind {
+            Kind::Plane => {
+                let along = camera.rotation.row(2);
+                Plane::new(along, -along.dot(middle)).map(Shape::from)
+            }
+            Kind::Box => Shape::cuboid(middle, DVec3::splat(size), DQuat::IDENTITY),
+            Kind::Sphere => Shape::sphere(middle, size),
+        };
+        // A scene without extent has no shape of its size.
+        if let Ok(shape) = made {
+            self.set(shape);
         }
     }
 

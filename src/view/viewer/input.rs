@@ -7,7 +7,7 @@ use rara::Mode;
 use winit::event::{ElementState, MouseButton, MouseScrollDelta};
 use winit::keyboard::{Key, KeyCode, ModifiersState, NamedKey, PhysicalKey};
 
-use super::action::{Action, Edit, GripAction, Which};
+use super::action::{Action, Edit, GripAction, Kind, Which};
 
 /// The list of keys, which the key H shows.
 pub const KEYS: &str = "\
@@ -31,6 +31,8 @@ Keys:
   X Y Z                        align the held shape with an axis; put a plane across it, mid-scene
   Page Up, Page Down           move the held shape along its normal or from the eye (Shift: a tenth)
   J K                          make the held shape smaller or larger
+  4 5 6                        put a plane, a box or a sphere in the held shape's place
+  Backspace or Ctrl+Z          take back the last change of a clip
   B                            outlines of the shapes on or off
   F1 to F9                     layer 1 to 9 on or off
   L                            edit the clip of the next layer; after the last one, the frame's clip
@@ -90,6 +92,12 @@ impl Input {
         let shift = self.modifiers.shift_key();
         let action = match logical {
             Key::Named(key) => named(*key, shift)?,
+            Key::Character(text) if self.modifiers.control_key() => {
+                match &text.to_lowercase()[..] {
+                    "z" => Action::Undo,
+                    _ => return None,
+                }
+            }
             Key::Character(text) => letter(text)?,
             _ => return None,
         };
@@ -97,7 +105,12 @@ impl Input {
         let repeats = action.moves()
             && !matches!(
                 action,
-                Action::Held(GripAction::Toggle | GripAction::Flip | GripAction::Next)
+                Action::Held(
+                    GripAction::Toggle
+                        | GripAction::Flip
+                        | GripAction::Next
+                        | GripAction::Become(_)
+                )
             );
         (repeats || !repeat).then_some(action)
     }
@@ -199,6 +212,7 @@ fn named(key: NamedKey, shift: bool) -> Option<Action> {
         NamedKey::F8 => layer(8),
         NamedKey::F9 => layer(9),
         NamedKey::F12 => Action::Screenshot(None),
+        NamedKey::Backspace => Action::Undo,
         NamedKey::Escape => Action::Quit,
         _ => return None,
     })
@@ -211,6 +225,9 @@ fn letter(text: &str) -> Option<Action> {
         "1" => Action::Mode(Mode::Hard),
         "2" => Action::Mode(Mode::Rara),
         "3" => Action::Mode(Mode::Exact),
+        "4" => held(GripAction::Become(Kind::Plane)),
+        "5" => held(GripAction::Become(Kind::Box)),
+        "6" => held(GripAction::Become(Kind::Sphere)),
         "+" | "=" => Action::Zoom(1.0),
         "-" => Action::Zoom(-1.0),
         "p" => held(GripAction::Toggle),

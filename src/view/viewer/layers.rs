@@ -1,5 +1,8 @@
 //! The layers of the scene, their clips, and the clip that is edited: the frame's, or a layer's own.
 
+use std::mem::{Discriminant, discriminant};
+use std::time::{Duration, Instant};
+
 use glam::DVec3;
 use rara::{Camera, ClipOp};
 
@@ -22,7 +25,24 @@ pub struct Clips {
     centre: DVec3,
     /// True when the window's scene is not yet as these say.
     changed: bool,
+    /// What the clips were before each change, the last one at the end.
+    past: Vec<Past>,
 }
+
+/// The clips before a change.
+#[derive(Debug, Clone)]
+struct Past {
+    frame: ClipEditor,
+    /// The layers' own.
+    own: Vec<Option<ClipEditor>>,
+    /// The kind of what has changed them, if more of it belongs to it, and when it did so last.
+    by: (Option<Discriminant<GripAction>>, Instant),
+}
+
+/// Changes that can be undone.
+const MOST_UNDONE: usize = 200;
+/// What follows a change of the same kind this soon belongs to it, as the steps of a drag do.
+const AT_ONCE: Duration = Duration::from_millis(700);
 
 /// The layers of a name that begin alike.
 #[derive(Debug, Clone)]
@@ -85,7 +105,39 @@ impl Clips {
             edited: None,
             centre,
             changed,
+            past: Vec::new(),
         }
+    }
+
+    /// Keeps what the clips are before something changes them.
+    fn remember(&mut self, action: Option<GripAction>) {
+        let by = (action.map(|action| discriminant(&action)), Instant::now());
+        let goes_on =
+            |last: &&mut Past| by.0.is_some() && last.by.0 == by.0 && by.1 - last.by.1 < AT_ONCE;
+        if let Some(last) = self.past.last_mut().filter(goes_on) {
+            last.by = by;
+            return;
+        }
+        if self.past.len() == MOST_UNDONE {
+            self.past.remove(0);
+        }
+        self.past.push(Past {
+            frame: self.frame.clone(),
+            own: self.layers.iter().map(|layer| layer.own.clone()).collect(),
+            by,
+        });
+    }
+
+    /// Makes the clips what they were before the last change, if there was one.
+    pub fn undo(&mut self) {
+        let Some(past) = self.past.pop() else {
+            return;
+        };
+        self.frame = past.frame;
+        for (layer, own) in self.layers.iter_mut().zip(past.own) {
+            layer.own = own;
+        }
+        self.changed = true;
     }
 
     /// The layers by name.
@@ -114,6 +166,7 @@ impl Clips {
 
     /// Puts these expressions in place of the clip that is edited.
     pub(super) fn replace(&mut self, clip: Vec<Expression>) {
+        self.remember(None);
         self.changed = true;
         match self.edited {
             None => self.frame = ClipEditor::new(clip, self.frame.op(), self.centre),
@@ -125,6 +178,7 @@ impl Clips {
 
     /// Gives the layers of a name a clip of their own; says whether there are any.
     pub(super) fn replace_of(&mut self, name: &str, clip: &LayerClip) -> bool {
+        self.remember(None);
         let centre = self.centre;
         let mut is_there = false;
         for layer in self.layers.iter_mut().filter(|layer| layer.name == name) {
@@ -137,6 +191,9 @@ impl Clips {
     /// Does what is asked of the held shape. What changes the clip of a layer without one gives it one, whose only shape is a
     /// plane through the middle of the scene.
     pub fn act(&mut self, action: GripAction, camera: &Camera, radius: f64) {
+        if action != GripAction::Next {
+            self.remember(Some(action));
+        }
         let cut = match self.edited {
             None => {
                 self.changed |= self.frame.has_section();
@@ -180,6 +237,7 @@ impl Clips {
                 self.edited = Some(layer + 1).filter(|&next| next < self.layers.len());
             }
             (Edit::Release, Some(layer)) => {
+                self.remember(None);
                 self.layers[layer].own = None;
                 self.changed = true;
             }

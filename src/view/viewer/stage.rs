@@ -218,6 +218,7 @@ impl Viewer {
                 let Scenery { clips, radius, .. } = &mut self.scenery;
                 clips.act(action, &camera, *radius);
             }
+            Action::Undo => self.scenery.clips.undo(),
             Action::Layer(which, visible) => self.scenery.clips.show(&which, visible)?,
             Action::Edit(edit) => self.scenery.clips.edit(&edit)?,
             Action::Outline(on) => self.manner.outlined = on.unwrap_or(!self.manner.outlined),

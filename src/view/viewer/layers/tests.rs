@@ -1,3 +1,4 @@
+use super::super::action::Kind;
 use super::*;
 use rara::LayerState;
 
@@ -81,4 +82,33 @@ fn a_layer_gets_a_clip_of_its_own_when_one_is_asked_for() {
     assert_eq!(clips.words().unwrap(), "clip of bone: whole");
     clips.edit(&Edit::Next).unwrap();
     assert_eq!(clips.words().unwrap(), "sphere");
+}
+
+#[test]
+fn changes_of_clips_can_be_taken_back() {
+    let mut clips = clips(&[layer("skin", true, None)]);
+    let act = |clips: &mut Clips, action| clips.act(action, &camera(), 2.0);
+    let text = |clips: &Clips| clips.frame.expressions()[0].to_string();
+    act(&mut clips, GripAction::Become(Kind::Box));
+    assert_eq!(text(&clips), "box:0,0,0,1,1,1");
+    // Two steps of a drag are one change.
+    for _ in 0..2 {
+        act(&mut clips, GripAction::Scale(2.0));
+    }
+    assert_eq!(text(&clips), "box:0,0,0,4,4,4");
+    clips.edit(&Edit::Next).unwrap();
+    act(&mut clips, GripAction::Become(Kind::Sphere));
+    let own = |clips: &Clips| clips.layers()[0].clip(&[]);
+    let ball = LayerClip::parse("sphere:0,0,0,1").unwrap();
+    assert_eq!(own(&clips), Some(ball.clone()));
+    clips.edit(&Edit::Release).unwrap();
+    assert_eq!(own(&clips), None);
+    clips.undo();
+    assert_eq!(own(&clips), Some(ball));
+    clips.undo();
+    assert_eq!(own(&clips), None);
+    for expected in ["box:0,0,0,1,1,1", "sphere:0,0,0,1", "sphere:0,0,0,1"] {
+        clips.undo();
+        assert_eq!(text(&clips), expected);
+    }
 }

@@ -68,7 +68,7 @@ pub unsafe extern "C" fn rara_clip_of_planes(
 
 /// Makes a clip of the text of an expression: a shape, as "sphere:0,0,0,1" or "!box:0,0,0,1,1,2", whose "!" keeps the
 /// outside, or all(...), any(...) and not(...) of expressions, as in "all(box:0,0,0,1,1,2, not(sphere:1,0,0,0.5))".
-/// `rara help render` has the numbers of each shape. RARA_ERROR_INVALID says what is wrong and in which column.
+/// `rara help clip` has the numbers of each shape. RARA_ERROR_INVALID says what is wrong and in which column.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rara_clip_parse(
     expression: *const c_char,

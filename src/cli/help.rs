@@ -1,7 +1,7 @@
-//! `rara help`: the commands, the flags of one in a line or two each, and all that is to be said of a topic.
+//! `rara help`: the commands, all flags of one with a summary each, and everything about the flags of a topic.
 //!
-//! A topic is a heading under which commands list flags. Their help has a summary of each flag, a topic all of its text, so that
-//! both come from the flags' definitions alone.
+//! A topic is a heading under which commands list flags. `rara help COMMAND` and `rara COMMAND -h` have a summary of each flag;
+//! `rara help TOPIC` and `rara COMMAND --help` have its whole text. All of them come from the flags' definitions alone.
 
 use clap::builder::StyledStr;
 use clap::{Arg, ArgAction, Args, Command};
@@ -9,7 +9,7 @@ use clap::{Arg, ArgAction, Args, Command};
 use super::failure::Failure;
 use super::output;
 
-/// Print the flags of a command, or everything about a topic
+/// List all flags of a command, or explain the flags of a topic
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
@@ -31,8 +31,8 @@ pub(super) fn command(definitions: Command) -> Command {
     let help = Arg::new("help")
         .short('h')
         .long("help")
-        .help("Print help")
-        .action(ArgAction::HelpShort)
+        .help("List the flags (-h), or explain each of them (--help)")
+        .action(ArgAction::Help)
         .display_order(1000);
     let overview = definitions.get_after_help().map(StyledStr::to_string);
     let overview = overview.map_or(String::new(), |overview| format!("{overview}\n\n"));
@@ -47,15 +47,13 @@ pub(super) fn command(definitions: Command) -> Command {
                 let is_output = arg.get_id() == "output";
                 arg.display_order(if is_output { 0 } else { order })
             });
-            let topics = topics(&part);
-            let names: Vec<_> = topics.iter().map(|heading| topic(heading)).collect();
+            let names: Vec<_> = topics(&part).iter().map(|heading| topic(heading)).collect();
             let more = match part.get_name() {
                 "help" => listed.clone(),
-                _ if topics.is_empty() => return part,
+                _ if part.get_arguments().all(|arg| arg.get_long_help().is_none()) => return part,
+                name if names.is_empty() => format!("{program} {name} --help explains each flag."),
                 name => format!(
-                    "{0} help {1} explains the flags of the command, and {0} help TOPIC explains those of the {2} {3}.",
-                    program,
-                    name,
+                    "{program} {name} --help explains each flag, and {program} help TOPIC explains the flags of the {} {}.",
                     if names.len() == 1 { "topic" } else { "topics" },
                     names.join(", ")
                 ),
@@ -64,12 +62,17 @@ pub(super) fn command(definitions: Command) -> Command {
             let after = after.map_or(String::new(), |after| format!("{after}\n\n"));
             part.after_help(format!("{after}{more}"))
         })
-        .mut_subcommands(|part| match part.get_after_help() {
-            Some(after) => {
-                let after = after.to_string().replace("PROGRAM", &program);
-                part.after_help(unwrapped(&after))
+        .mut_subcommands(|part| {
+            let Some(after) = part.get_after_help() else {
+                return part;
+            };
+            let after = unwrapped(&after.to_string().replace("PROGRAM", &program));
+            let long = part.get_after_long_help().map(StyledStr::to_string);
+            match long {
+                Some(long) => part.after_long_help(format!("{}\n\n{after}", unwrapped(&long))),
+                None => part,
             }
-            None => part,
+            .after_help(after)
         });
     command.arg(help.global(true))
 }
@@ -166,18 +169,12 @@ fn page(flags: Vec<Arg>) -> Command {
         .args(flags)
 }
 
-/// All that is to be said of a command, but for its topics.
+/// All flags of a command with a summary each, and all else that its help says.
 fn of_command(command: &Command) -> String {
-    let own = command.get_arguments();
-    let own = own.filter(|arg| arg.get_help_heading().is_none() && arg.get_id() != "help");
-    let usage = command.clone().render_usage();
-    let about = command.get_about().cloned().unwrap_or_default();
-    let after = [command.get_after_long_help(), command.get_after_help()];
-    let after: Vec<String> = after.iter().flatten().map(ToString::to_string).collect();
-    let page = page(own.cloned().collect())
-        .help_template("{all-args}{after-help}")
-        .after_help(unwrapped(&after.join("\n\n")));
-    format!("{about}\n\n{usage}\n\n{}", page.clone().render_long_help())
+    let after = command.get_after_long_help().cloned();
+    let after = after.or_else(|| command.get_after_help().cloned());
+    let mut command = command.clone().after_help(after.unwrap_or_default());
+    command.render_help().to_string()
 }
 
 #[cfg(test)]

@@ -274,6 +274,8 @@ fn several_scenes_are_told_apart() {
 fn help_has_commands_and_topics() {
     let help = |of: &[&str]| stdout(&done(rara([&["help"], of].concat())));
     assert!(help(&[]).contains("render") && help(&["render"]).contains("--aov <LIST>"));
+    let whole = stdout(&done(rara(["render", "--help"])));
+    assert!(whole.contains("ellipsoid:cx") && whole.contains("Beside a.png the files are"));
     let clip = help(&["clip"]);
     assert!(
         clip.contains("ellipsoid:cx") && clip.contains("--clip-op"),

@@ -29,6 +29,34 @@ fn the_help_of_a_command_is_short_and_begins_with_its_output() {
 }
 
 #[test]
+fn a_command_lists_all_of_its_flags_by_their_headings() {
+    for part in parts() {
+        let text = of_command(&part);
+        let mut rest = text.as_str();
+        for heading in topics(&part) {
+            let at = rest.find(&format!("\n{heading}:\n"));
+            rest = &rest[at.unwrap_or_else(|| panic!("{}: {heading}", part.get_name()))..];
+        }
+        for arg in part.get_arguments() {
+            let name = arg.get_long().map(|long| format!("--{long} "));
+            let summary = arg.get_help().map(ToString::to_string).unwrap_or_default();
+            let word = summary.split(' ').next().unwrap_or_default();
+            let mut lines = text.lines();
+            let is_of = |line: &&str| name.as_ref().is_none_or(|name| line.contains(name));
+            assert!(
+                lines.any(|line| is_of(&line) && line.contains(word)),
+                "{arg:?}"
+            );
+        }
+        assert!(
+            !text.contains("\n\n          "),
+            "{}: {text}",
+            part.get_name()
+        );
+    }
+}
+
+#[test]
 fn texts_are_for_readers_of_a_terminal() {
     let mut long: Vec<String> = Vec::new();
     for part in parts() {

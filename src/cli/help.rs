@@ -3,7 +3,10 @@
 //! A topic is a heading under which commands list flags. `rara help COMMAND` and `rara COMMAND -h` have a summary of each flag;
 //! `rara help TOPIC` and `rara COMMAND --help` have its whole text. All of them come from the flags' definitions alone.
 
+use std::ffi::OsString;
+
 use clap::builder::StyledStr;
+use clap::error::{ContextKind, ContextValue, Error, ErrorKind};
 use clap::{Arg, ArgAction, Args, Command};
 
 use super::failure::Failure;
@@ -156,6 +159,51 @@ impl Help {
             known.join(", ")
         )))
     }
+}
+
+/// Flags that rara does not have although other programs do, and rara's own with the same purpose.
+const MEANT: &[(&str, &[&str])] = &[
+    ("--width", &["size"]),
+    ("--height", &["size"]),
+    ("--resolution", &["size"]),
+    ("--near", &["clip-near", "near-cut"]),
+    ("--far", &["clip-far"]),
+    ("--fov", &["fov-y"]),
+    ("--opacity", &["layer-opacity", "min-opacity"]),
+    ("--bg", &["background"]),
+    ("--out", &["output"]),
+];
+
+/// An error about words that were typed, with the flag that is meant by one that does not exist. Clap's own tips go by the
+/// letters of a name, not by its purpose; and nobody means a flag to be the name of a scene.
+pub(super) fn with_tip(mut error: Error, program: &Command, words: &[OsString]) -> Error {
+    let Some(ContextValue::String(wrong)) = error.get(ContextKind::InvalidArg) else {
+        return error;
+    };
+    if error.kind() != ErrorKind::UnknownArgument {
+        return error;
+    }
+    let meant = MEANT.iter().find(|(other, _)| other == wrong);
+    error.remove(ContextKind::Suggested);
+    let Some((_, meant)) = meant else {
+        return error;
+    };
+    error.remove(ContextKind::SuggestedArg);
+    let mut parts = words
+        .iter()
+        .filter_map(|word| program.find_subcommand(word));
+    let flags = parts.next().into_iter().flat_map(Command::get_arguments);
+    let flags = flags.filter(|flag| flag.get_long().is_some_and(|long| meant.contains(&long)));
+    let tips = flags.map(|flag| {
+        let summary = flag.get_help().map(ToString::to_string);
+        let name = flag.to_string();
+        format!("use {name}: {}", summary.unwrap_or_default()).into()
+    });
+    let tips: Vec<StyledStr> = tips.collect();
+    if !tips.is_empty() {
+        error.insert(ContextKind::Suggested, ContextValue::StyledStrs(tips));
+    }
+    error
 }
 
 /// A page with all that is to be said of flags.

@@ -104,7 +104,9 @@ impl<C: Commands> All<C> {
 fn parsed<C: Commands>(
     words: impl Iterator<Item = OsString>,
 ) -> Result<(Line<C>, ArgMatches), clap::Error> {
-    let typed = all::<C>().try_get_matches_from(words)?;
+    let words: Vec<_> = words.collect();
+    let typed = all::<C>().try_get_matches_from(&words);
+    let typed = typed.map_err(|error| help::with_tip(error, &all::<C>(), &words))?;
     let line = Line::from_arg_matches(&typed);
     let line = line.map_err(|error| error.format(&mut all::<C>()))?;
     Ok((line, typed))

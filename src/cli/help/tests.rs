@@ -109,6 +109,69 @@ fn a_topic_is_one_heading() {
 }
 
 #[test]
+fn flags_of_other_programs_have_a_tip_and_no_nonsense() {
+    let said = |line: &str| {
+        let words: Vec<OsString> = line.split(' ').map(OsString::from).collect();
+        let command = all::<crate::Command>();
+        let error = command.clone().try_get_matches_from(&words);
+        let error = with_tip(error.expect_err("no such flag"), &command, &words);
+        crate::failure::Failure::from(error).to_string()
+    };
+    for (line, tip) in [
+        (
+            "rara render a.ply --width 9",
+            "tip: use --size <WxH>: Picture",
+        ),
+        (
+            "rara render a.ply --height=9",
+            "tip: use --size <WxH>: Picture",
+        ),
+        (
+            "rara sweep a.ply --resolution 9",
+            "tip: use --size <WxH>: Picture",
+        ),
+        (
+            "rara render a.ply --near 1",
+            "tip: use --clip-near <DEPTH>: Clip",
+        ),
+        (
+            "rara render a.ply --near 1",
+            "tip: use --near-cut <DEPTH>: Leave",
+        ),
+        (
+            "rara render a.ply --far 1",
+            "tip: use --clip-far <DEPTH>: Clip",
+        ),
+        (
+            "rara render a.ply --fov 50",
+            "tip: use --fov-y <DEG>: Vertical",
+        ),
+        (
+            "rara convert a.ply --opacity 1",
+            "tip: use --min-opacity <A>: Leave",
+        ),
+        (
+            "rara render a.ply --bg 1,1,1",
+            "tip: use --background <COLOUR>",
+        ),
+        (
+            "rara render a.ply --out a.png",
+            "tip: use --output <OUT>: A pic",
+        ),
+        (
+            "rara render a.ply --clips x",
+            "tip: a similar argument exists: '--clip",
+        ),
+    ] {
+        let said = said(line);
+        assert!(said.contains(tip), "{line}: {said}");
+        assert!(!said.contains("as a value"), "{line}: {said}");
+    }
+    assert!(!said("rara render a.ply --opacity 1").contains("--part"));
+    assert!(!said("rara render a.ply --zzz 1").contains("tip"));
+}
+
+#[test]
 fn paragraphs_are_joined_and_lists_are_not() {
     let text = "Examples:\n  a\n  b\n\nOne\ntwo.\n\nThree:\n  c";
     assert_eq!(

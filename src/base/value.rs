@@ -115,34 +115,31 @@ impl<T: Value> Value for Option<T> {
     }
 }
 
-/// The names of colours.
-const COLOURS: [(&str, [f32; 3]); 7] = [
-    ("black", [0.0, 0.0, 0.0]),
-    ("white", [1.0, 1.0, 1.0]),
-    ("grey", [0.5, 0.5, 0.5]),
-    ("gray", [0.5, 0.5, 0.5]),
-    ("red", [1.0, 0.0, 0.0]),
-    ("green", [0.0, 1.0, 0.0]),
-    ("blue", [0.0, 0.0, 1.0]),
-];
+/// Names of colours whose meaning is older here than CSS's names, which have 0,0.5,0 for green.
+const COLOURS: [(&str, [f32; 3]); 2] = [("gray", [0.5, 0.5, 0.5]), ("green", [0.0, 1.0, 0.0])];
 
-/// A colour: `r,g,b`, each 0 to 1, `#rgb`, `#rrggbb` or one of a few names.
+/// A colour: `r,g,b`, each 0 to 1, `#rgb`, `#rrggbb` or a name that CSS has for it.
 impl Value for [f32; 3] {
     fn read(text: &str) -> std::result::Result<Self, String> {
-        if let Some(digits) = text.strip_prefix('#') {
-            return hexadecimal(digits)
+        if text.starts_with('#') {
+            let rgb = if matches!(text.len(), 4 | 7) {
+                css(text)
+            } else {
+                None
+            };
+            return rgb
                 .ok_or_else(|| "expected three or six hexadecimal digits, as in #fff".into());
         }
-        if let Some((_, rgb)) = COLOURS.iter().find(|(name, _)| *name == text) {
-            return Ok(*rgb);
+        if text.starts_with(|letter: char| letter.is_ascii_alphabetic()) && !text.contains(',') {
+            return css(text).ok_or_else(|| {
+                let name = shortened(text);
+                format!("there is no colour '{name}'; give one of CSS's names, such as white or orange, #rrggbb, or r,g,b from 0 to 1")
+            });
         }
         let rgb: Option<Vec<f32>> = text.split(',').map(|n| n.trim().parse().ok()).collect();
-        let rgb: [f32; 3] = rgb.and_then(|rgb| rgb.try_into().ok()).ok_or_else(|| {
-            format!(
-                "expected 3 numbers with commas between them, #rrggbb, or one of {}",
-                COLOURS.map(|(name, _)| name).join(", ")
-            )
-        })?;
+        let rgb: [f32; 3] = rgb.and_then(|rgb| rgb.try_into().ok()).ok_or(
+            "expected three numbers with commas between them, as in 1,0.5,0, or #rrggbb, or a name such as orange",
+        )?;
         match rgb.iter().all(|c| (0.0..=1.0).contains(c)) {
             true => Ok(rgb),
             false => Err("red, green and blue are each between 0 and 1".into()),
@@ -155,17 +152,19 @@ impl Value for [f32; 3] {
     }
 }
 
-fn hexadecimal(digits: &str) -> Option<[f32; 3]> {
-    let values = digits.chars().map(|digit| digit.to_digit(16));
-    let values: Vec<u32> = values.collect::<Option<_>>()?;
-    let of = |value: u32| value as f32 / 255.0;
-    match *values.as_slice() {
-        [r, g, b] => Some([r, g, b].map(|v| of(17 * v))),
-        [r1, r0, g1, g0, b1, b0] => {
-            Some([(r1, r0), (g1, g0), (b1, b0)].map(|(h, l)| of(16 * h + l)))
-        }
-        _ => None,
+/// An opaque colour by its name or its hexadecimal digits. CSS spells grey in both ways.
+fn css(text: &str) -> Option<[f32; 3]> {
+    let text = text.to_ascii_lowercase().replace("grey", "gray");
+    if let Some((_, rgb)) = COLOURS.iter().find(|(name, _)| *name == text) {
+        return Some(*rgb);
     }
+    let is_word = text
+        .bytes()
+        .all(|byte| byte == b'#' || byte.is_ascii_alphanumeric());
+    let colour = color::parse_color(&text).ok().filter(|_| is_word)?;
+    let colour = colour.to_alpha_color::<color::Srgb>().to_rgba8();
+    let rgb = [colour.r, colour.g, colour.b].map(|value| f32::from(value) / 255.0);
+    (colour.a == 255).then_some(rgb)
 }
 
 #[cfg(test)]
@@ -178,8 +177,27 @@ mod tests {
         assert_eq!(read("white"), Ok([1.0; 3]));
         assert_eq!(read("#fff"), Ok([1.0; 3]));
         assert_eq!(read("#ff0080"), Ok([1.0, 0.0, 128.0 / 255.0]));
+        assert_eq!(read("#F08"), Ok([1.0, 0.0, 136.0 / 255.0]));
         assert_eq!(read("0, 0.5,1"), Ok([0.0, 0.5, 1.0]));
-        for wrong in ["#ffff", "#ggg", "wite", "0,0,1.5", "0,0", "nan,0,0", ""] {
+        let orange = [1.0, 165.0 / 255.0, 0.0];
+        assert_eq!((read("orange"), read("Orange")), (Ok(orange), Ok(orange)));
+        assert_eq!(
+            (read("grey"), read("green")),
+            (Ok([0.5; 3]), Ok([0.0, 1.0, 0.0]))
+        );
+        assert!(read("darkslategrey").is_ok() && read("darkslategrey") == read("darkslategray"));
+        for wrong in [
+            "#ffff",
+            "#ggg",
+            "wite",
+            "0,0,1.5",
+            "0,0",
+            "nan,0,0",
+            "",
+            "transparent",
+            "rgb(0 0 0)",
+            "#",
+        ] {
             assert!(read(wrong).is_err(), "{wrong}");
         }
     }

@@ -12,7 +12,7 @@ use super::pattern::is_several;
 use rara_base::value::Value;
 pub(super) use rara_scene::picture::size;
 
-/// A colour: `r,g,b`, each 0 to 1, `#rgb`, `#rrggbb` or one of a few names.
+/// A colour: `r,g,b`, each 0 to 1, `#rgb`, `#rrggbb` or a name that CSS has for it.
 pub(super) fn colour(text: &str) -> Result<[f32; 3], String> {
     Value::read(text)
 }

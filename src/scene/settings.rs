@@ -138,7 +138,8 @@ settings! {
         pub form: ExactForm as "form"(Measure, "FORM"),
         /// The colour behind the picture, which is otherwise transparent.
         ///
-        /// The colour is three numbers from 0 to 1, as in 1,0.5,0, or #rrggbb, or a name such as white.
+        /// The colour is three numbers from 0 to 1, as in 1,0.5,0, or #rrggbb, or a name that CSS has for it, such as white or
+        /// orange. green is 0,1,0 and grey is 0.5,0.5,0.5.
         pub background: Option<[f32; 3]> as "background"(Look, "COLOUR"),
         /// The highest degree of spherical harmonics; if not given, the scene's.
         pub sh_degree: Option<u32> as "sh-degree"(Look, "N", |n| *n <= Some(3), "a number from 0 to 3"),

@@ -3,8 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use clap::builder::{OsStringValueParser, TypedValueParser};
-use rara::scene::{self, Bounds, Format, SaveOptions};
+use rara::scene::{self, Annotations, Bounds, Format, SaveOptions};
 use rara::{
     BakeCounts, BakeSettings, BakedGaussians, Camera, Clip, Gaussians, Layer, Mode, Placement,
     Scene, bake_layer,
@@ -22,17 +21,20 @@ use super::scenes::SceneArgs;
 use super::settings::DeviceArgs;
 use super::trained;
 use super::values;
-use rara::scene::layers::{LayerEntry, LayerRemains, LoadedLayer, SceneLayers, joined};
+use rara::scene::layers::{LayerEntry, LayerRemains, SceneLayers, joined};
 use rara_shots::UP;
 
 /// Write a scene that shows a cut in any viewer
 #[derive(Debug, Args)]
-#[command(after_help = "\
+#[command(after_help = format!("\
 Examples:
   rara bake scene.ply -o cut.ply --clip plane:0,0,1,-2
   rara bake scene.ply -o core.ply --clip box:0,0,0,1,1,2 --json
   rara bake body.ply organ.ply -o both.ply --clip plane:1,0,0,0
-  rara bake body.ply organ.ply -o cut_{}.ply --clip plane:1,0,0,0 --views 0
+  rara bake body.ply organ.ply -o cut_{{}}.ply --clip plane:1,0,0,0 --views 0
+  rara bake scene.ply -o cut.spz --clip plane:z=40%
+
+The extension of OUT chooses the format: {}. What the format cannot store is left out with a warning.
 
 Gaussians outside the clip are dropped, and Gaussians that the clip leaves whole are kept. Each Gaussian that the clip cuts
 is replaced by one with the mass, the mean and the covariance of its visible part. A Gaussian has no sharp edge, so a baked
@@ -40,11 +42,13 @@ cut is soft: in measurements, 12 to 17 % of the light of single cut splats was w
 their centres instead, 35 % was wrong. The command prints a table of the differences between pictures of the baked scene and
 of the exact cut. Baking the result again with the same clip changes nothing or almost nothing, unless --leave is above 1.
 
-Several scenes are joined and baked as one. With {} in OUT, each scene is baked by itself, into a file with the scene's name in
-place of {}.")]
+The compared pictures show the baked Gaussians before a format rounds them.
+
+Several scenes are joined and baked as one. With {{}} in OUT, each scene is baked by itself, into a file with the scene's name in
+place of {{}}.", Format::endings()))]
 pub(super) struct Bake {
-    /// File for the baked scene; {} becomes the name of each SCENE without its extension
-    #[arg(short, long, value_name = "OUT.ply", value_parser = OsStringValueParser::new().try_map(values::ply_path))]
+    /// File for the baked scene; its extension chooses the format; {} becomes the name of each SCENE
+    #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
     /// Replace the splats that this mode would cut in a picture
     ///
@@ -99,7 +103,11 @@ struct BakeJson {
     gaussians: usize,
     written: usize,
     counts: BakeCounts,
+    /// The number of Gaussians that were written with the nearest values of the format in place of their own.
+    clamped: u64,
     files: Vec<PathBuf>,
+    /// Notes of the formats: what they cannot store.
+    notes: Vec<String>,
     /// Against the exact cut, over all views; null without any.
     baked: Option<Measures>,
     /// The same of a clip by centres.
@@ -111,22 +119,21 @@ struct BakeJson {
 struct Output {
     path: PathBuf,
     gaussians: Gaussians,
+    annotations: Annotations,
     /// The direction that is up in it, where its scenes say so.
     up: Option<glam::DVec3>,
 }
 
 impl Bake {
     pub(super) fn run(self) -> Result<(), Failure> {
+        let format =
+            scene::saved_format(&self.output).map_err(|error| Failure::Usage(error.to_string()))?;
         let entries = self.scenes.entries()?;
         let clip = self.meant_clip(&entries)?;
         let names: Vec<_> = entries.iter().flat_map(LayerEntry::names).collect();
         let sources = entries.iter().map(|entry| entry.path.as_path());
         let paths = scene_files(&self.output, &names, sources)?;
         let mut loaded = self.scenes.load()?;
-        // Baked Gaussians are others, and have no such properties.
-        if let Some(lost) = loaded.extra.lost(Format::Ply) {
-            say(format_args!("warning: {lost}"));
-        }
         clip.settle(&mut loaded)?;
         let clip = clip.clip(&loaded.scene())?;
         let is_merged = !is_several(&self.output);
@@ -173,16 +180,21 @@ impl Bake {
             0 => None,
             _ => Some(self.compare(&loaded, &baked, &clip)?),
         };
-        let outputs = outputs(&loaded, &paths, baked);
-        for output in &outputs {
-            let options = SaveOptions::default().up(output.up);
-            scene::save_with(&output.path, &output.gaussians, &options)?;
-            if let Some(lost) = convert::lost_up(Format::Ply, output.up) {
-                say(format_args!("warning: {lost}"));
-            }
+        let mut outputs = outputs(&loaded, &paths, baked);
+        // Baked Gaussians are others, and have no properties of their own; all files lose the same.
+        let mut lost = loaded.extra.lost(format);
+        let (mut clamped, mut notes) = (0, Vec::new());
+        for output in &mut outputs {
+            let annotations = std::mem::take(&mut output.annotations);
+            let options = SaveOptions::default()
+                .annotations(Some(annotations))
+                .up(output.up);
+            let written = convert::write(&output.path, &output.gaussians, &options, lost.take())?;
+            clamped += written.0;
+            notes.extend(written.1);
         }
         let gaussians = loaded.scene().gaussians();
-        self.print(gaussians, counts, &outputs, residual)
+        self.print((gaussians, counts), &outputs, (clamped, notes), residual)
     }
 
     /// The clip of the frame, where that or a layer's own may cut.
@@ -219,9 +231,9 @@ impl Bake {
 
     fn print(
         &self,
-        gaussians: usize,
-        counts: BakeCounts,
+        (gaussians, counts): (usize, BakeCounts),
         outputs: &[Output],
+        (clamped, notes): (u64, Vec<String>),
         residual: Option<Residual>,
     ) -> Result<(), Failure> {
         let written = outputs.iter().map(|output| output.gaussians.len()).sum();
@@ -248,7 +260,9 @@ impl Bake {
                 gaussians,
                 written,
                 counts,
+                clamped,
                 files: outputs.iter().map(|output| output.path.clone()).collect(),
+                notes,
                 baked,
                 hard,
                 views,
@@ -308,26 +322,45 @@ fn print_counts(counts: &BakeCounts) {
 
 /// The files with what they hold: all in one, or one each.
 fn outputs(loaded: &SceneLayers, paths: &[PathBuf], baked: Vec<BakedGaussians>) -> Vec<Output> {
-    let layers = loaded.layers.iter().zip(baked);
-    if layers.len() == paths.len() {
-        let output = |(path, (layer, baked)): (&PathBuf, (&LoadedLayer, BakedGaussians))| Output {
-            path: path.clone(),
-            gaussians: baked.gaussians,
-            up: layer.up,
+    let is_each = loaded.layers.len() == paths.len();
+    let mut before = 0;
+    let remains = loaded.layers.iter().zip(baked).map(|(layer, baked)| {
+        let count = layer.gaussians.len();
+        let earlier = LayerRemains {
+            numbers: None,
+            count: before,
+            gaussians: Gaussians::default(),
+            sources: Vec::new(),
         };
-        return paths.iter().zip(layers).map(output).collect();
-    }
-    let taken = layers.map(|(layer, baked)| LayerRemains {
-        numbers: layer.numbers.clone(),
-        count: layer.gaussians.len(),
-        gaussians: baked.gaussians,
-        sources: baked.sources,
+        before += count;
+        let own = LayerRemains {
+            numbers: layer.numbers.clone(),
+            count,
+            gaussians: baked.gaussians,
+            sources: baked.sources,
+        };
+        (earlier, own)
     });
-    vec![Output {
-        path: paths[0].clone(),
-        gaussians: joined(taken.collect()).gaussians,
-        up: convert::up(loaded, &Placement::IDENTITY),
-    }]
+    let output = |path: &PathBuf, remains: Vec<LayerRemains>, up| {
+        let part = joined(remains);
+        let mut annotations = loaded.annotations.clone();
+        annotations.keep(&part.numbers);
+        Output {
+            path: path.clone(),
+            gaussians: part.gaussians,
+            annotations,
+            up,
+        }
+    };
+    if is_each {
+        let each = paths.iter().zip(&loaded.layers).zip(remains);
+        return each
+            .map(|((path, layer), (earlier, own))| output(path, vec![earlier, own], layer.up))
+            .collect();
+    }
+    let all = remains.map(|(_, own)| own).collect();
+    let up = convert::up(loaded, &Placement::IDENTITY);
+    vec![output(&paths[0], all, up)]
 }
 
 /// Cameras around the scene, equally far apart, the first on the side from which a picture without a camera is taken.

@@ -1,11 +1,11 @@
 //! `rara convert`: scenes from one format to another.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use glam::{DQuat, DVec3};
 use rara::scene::{self, Annotations, Format, Part, SaveOptions};
-use rara::{Clip, LayerState, Placement};
+use rara::{Clip, Gaussians, LayerState, Placement};
 use serde::Serialize;
 use serde_json::json;
 
@@ -100,13 +100,6 @@ impl ConvertJson {
                     counted(count as u64, "Gaussian")
                 ));
             }
-        }
-        if self.clamped > 0 {
-            say(format_args!(
-                "note: of {} scales, colours or coefficients are beyond what {} holds, and the nearest that it does now",
-                counted(self.clamped, "Gaussian"),
-                self.format
-            ));
         }
         if self.written == 0 && self.gaussians > 0 {
             say(format_args!(
@@ -204,25 +197,15 @@ impl Convert {
         if let Some(degree) = self.sh_degree.filter(|&degree| degree < whole.sh_degree()) {
             whole.set_sh_degree(degree);
         }
-        let lost_words = lost_words(format, &annotations);
-        let lost_extra = extra.lost(format);
+        let lost = extra.lost(format);
         let options = SaveOptions::default()
             .spz_version(self.spz_version)
             .annotations(Some(annotations))
             .properties(extra.properties)
             .up(up);
-        document.clamped = scene::save_with(&document.file, &whole, &options)?;
-        let notes = [
-            trained::lost(format, whole.training()),
-            lost_origin(format, &whole),
-            lost_words,
-            lost_extra,
-            lost_up(format, up),
-        ];
-        for note in notes.into_iter().flatten() {
-            say(format_args!("warning: {note}"));
-            document.notes.push(note);
-        }
+        let (clamped, notes) = write(&document.file, &whole, &options, lost)?;
+        document.clamped = clamped;
+        document.notes.extend(notes);
         document.written = whole.len();
         document.sh_degree = whole.sh_degree();
         document.bytes = std::fs::metadata(&document.file).map_or(0, |metadata| metadata.len());
@@ -281,6 +264,38 @@ impl Convert {
     }
 }
 
+/// Writes a scene in the format that the file's name says, and warns of all that the format cannot say, which follows, and of
+/// what is `lost` anyway. The number is that of the Gaussians that were clamped.
+pub(super) fn write(
+    file: &Path,
+    gaussians: &Gaussians,
+    options: &SaveOptions,
+    lost: Option<String>,
+) -> Result<(u64, Vec<String>), Failure> {
+    let format = scene::saved_format(file)?;
+    let clamped = scene::save_with(file, gaussians, options)?;
+    let words = options.annotations.as_ref();
+    let notes = [
+        trained::lost(format, gaussians.training()),
+        lost_origin(format, gaussians),
+        words.and_then(|words| lost_words(format, words)),
+        lost,
+        lost_up(format, options.up),
+    ];
+    let notes: Vec<String> = notes.into_iter().flatten().collect();
+    for note in &notes {
+        say(format_args!("warning: {note}"));
+    }
+    if clamped > 0 {
+        say(format_args!(
+            "note: {} had scales, colours or coefficients outside the range of {format}; each is written as the nearest value \
+             that {format} can store",
+            counted(clamped, "Gaussian")
+        ));
+    }
+    Ok((clamped, notes))
+}
+
 /// The direction that is up in the file that is written, where that of its first layer says so.
 pub(super) fn up(loaded: &SceneLayers, placement: &Placement) -> Option<DVec3> {
     let first = loaded.layers.iter().find(|layer| layer.state.visible)?;
@@ -289,7 +304,7 @@ pub(super) fn up(loaded: &SceneLayers, placement: &Placement) -> Option<DVec3> {
 }
 
 /// The warning that a file of this format cannot say what is up.
-pub(super) fn lost_up(format: Format, up: Option<DVec3>) -> Option<String> {
+fn lost_up(format: Format, up: Option<DVec3>) -> Option<String> {
     let is_axis = |up: DVec3| up.abs().max_element() > 1.0 - 1e-6;
     up.filter(|up| format != Format::Ply || !is_axis(*up))
         .map(|up| {
@@ -299,7 +314,7 @@ pub(super) fn lost_up(format: Format, up: Option<DVec3>) -> Option<String> {
 }
 
 /// The warning that a file of this format cannot hold what the centres are counted from.
-fn lost_origin(format: Format, gaussians: &rara::Gaussians) -> Option<String> {
+fn lost_origin(format: Format, gaussians: &Gaussians) -> Option<String> {
     let [x, y, z] = gaussians.origin().to_array();
     match format {
         _ if [x, y, z] == [0.0; 3] => None,

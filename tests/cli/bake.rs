@@ -170,6 +170,41 @@ fn a_clip_that_keeps_nothing_leaves_an_empty_scene_and_says_so() {
     );
 }
 
+/// Baking writes as converting does, and warns of the same.
+#[test]
+fn a_cut_is_written_in_every_format_that_scenes_are_converted_to() {
+    let here = folder("bake-formats");
+    scene(&here);
+    let clip = "--clip plane:1,0,0,0";
+    let ply = document(line(
+        &here,
+        &format!("bake @/scene.ply -o @/cut.ply {clip} --views 0 --json"),
+    ));
+    for ending in ["compressed.ply", "spz", "sog", "glb"] {
+        let words = format!("bake @/scene.ply -o @/cut.{ending} {clip} --views 0 --json");
+        let report = document(line(&here, &words));
+        assert_eq!(report["written"], ply["written"], "{ending}");
+        let info = document(line(&here, &format!("info @/cut.{ending} --json")));
+        assert_eq!(info["gaussians"], ply["written"], "{ending}");
+        // What the format says less of is the same as of the baked scene by itself.
+        let words = format!("convert @/cut.ply -o @/again.{ending} --json");
+        let again = document(line(&here, &words));
+        assert_eq!(report["notes"], again["notes"], "{ending}");
+    }
+    done(line(
+        &here,
+        &format!("bake @/scene.ply @/cut.ply -o @/{{}}.b.glb {clip} --views 0"),
+    ));
+    let info = document(line(&here, "info @/cut.b.glb --json"));
+    assert!(info["gaussians"].as_u64() > Some(0), "{info}");
+    let far = "--low-pass 0.1 --views 0";
+    let said = stderr(&done(line(
+        &here,
+        &format!("bake @/scene.ply -o @/far.spz {clip} {far}"),
+    )));
+    assert!(said.contains("draw the file with --low-pass 0.1"), "{said}");
+}
+
 #[test]
 fn what_cannot_be_baked_is_refused_and_nothing_is_written() {
     let here = folder("bake-refused");

@@ -167,7 +167,7 @@ fn what_is_lost_or_clamped_is_said() {
 
     let made = done(line(&here, "convert @/scene.ply -o @/b.spz --scale 100000"));
     assert!(
-        stderr(&made).contains("beyond what .spz holds"),
+        stderr(&made).contains("outside the range of .spz"),
         "{}",
         stderr(&made)
     );

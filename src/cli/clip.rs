@@ -30,10 +30,10 @@ pub struct ClipArgs {
     clip_expr: Vec<Region>,
     /// Take clips from a JSON file (repeatable)
     ///
-    /// The file is a list of planes, {"normal":[x,y,z],"d":d}, and of expressions as trees, {"clip":{"all":[...]}}, as
-    /// --save-clip writes them. Each may have a "name". :NAME takes the clips of that name, or the clip of that number (from
-    /// 0), and :* takes all clips. A file that has several clips with names needs :NAME or :*. The file may also have clips of
-    /// single layers; they are taken too, unless NAME is the name of one of them.
+    /// The file is a list. Each element is a plane, such as {"normal":[x,y,z],"d":d}, or an expression as a tree, such as
+    /// {"clip":{"all":[...]}}, and may have a "name". --save-clip writes such a file. FILE:NAME takes the clips with this name,
+    /// or the clip with this number (from 0), and FILE:* takes all clips. If several clips have names, :NAME or :* is needed.
+    /// An element with "layer" cuts only this layer. rara takes these elements too, unless NAME names one of them.
     #[arg(long, value_name = "FILE[:NAME]")]
     clip_file: Vec<String>,
     /// Write the clip to a JSON file for --clip-file
@@ -266,10 +266,9 @@ fn from_file(text: &str) -> Result<Vec<NamedClip>, Failure> {
             let of_all = clips.iter().filter(|named| named.layer.is_none());
             let names: Vec<_> = of_all.map(|named| named.name.as_str()).collect();
             return Err(Failure::Usage(format!(
-                "--clip-file {text}: {} has {}, {}: say which, as in {}:{}, or {}:{ALL} for all of them together",
+                "--clip-file {text}: {} has {}; say which, as in {}:{}, or {}:{ALL} for all of them together",
                 path.display(),
-                output::counted(names.len() as u64, "clip"),
-                names.join(", "),
+                listed(&names),
                 path.display(),
                 names[0],
                 path.display(),
@@ -287,11 +286,12 @@ fn from_file(text: &str) -> Result<Vec<NamedClip>, Failure> {
         found.extend(numbered.cloned());
     }
     if found.is_empty() {
-        let meant = values::meant(name, clips.iter().map(|named| named.name.as_str()));
+        let names: Vec<_> = clips.iter().map(|named| named.name.as_str()).collect();
+        let meant = values::meant(name, names.iter().copied());
         return Err(Failure::Usage(format!(
-            "--clip-file {text}: {} has {}, and none of that name or number (from 0){meant}",
+            "--clip-file {text}: no clip has the name or the number (from 0) '{name}'; {} has {}{meant}",
             path.display(),
-            output::counted(clips.len() as u64, "clip")
+            listed(&names)
         )));
     }
     if found.iter().any(|named| named.layer.is_none()) {
@@ -300,6 +300,18 @@ fn from_file(text: &str) -> Result<Vec<NamedClip>, Failure> {
         found.extend(clips.into_iter().filter(|named| named.layer.is_some()));
     }
     Ok(found)
+}
+
+/// The number of clips of these names, and as many of the names as a line holds.
+fn listed(names: &[&str]) -> String {
+    const NAMED: usize = 8;
+    let count = output::counted(names.len() as u64, "clip");
+    let more = match names.len().saturating_sub(NAMED) {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    let names = &names[..names.len().min(NAMED)];
+    format!("{count}: {}{more}", names.join(", "))
 }
 
 #[cfg(test)]

@@ -16,6 +16,7 @@ use super::pattern::{is_several, scene_files};
 use super::scenes::SceneArgs;
 use super::{trained, up, values};
 use rara::scene::layers::{FileNumbers, LayerRemains, LoadedLayer, SceneLayers, joined, without};
+use rara_shots::UP;
 
 /// Write a scene in another format
 #[derive(Debug, Args)]
@@ -303,10 +304,10 @@ pub(super) fn up(loaded: &SceneLayers, placement: &Placement) -> Option<DVec3> {
     Some(turn * first.up?)
 }
 
-/// The warning that a file of this format cannot say what is up.
+/// The warning that a file of this format cannot say which direction is up, where that is not the one without a file's word.
 fn lost_up(format: Format, up: Option<DVec3>) -> Option<String> {
     let is_axis = |up: DVec3| up.abs().max_element() > 1.0 - 1e-6;
-    up.filter(|up| format != Format::Ply || !is_axis(*up))
+    up.filter(|up| up.distance(UP) > 1e-6 && (format != Format::Ply || !is_axis(*up)))
         .map(|up| {
             let up = up::direction_text(up);
             format!("left out that {up} is up; draw the file with --up {up}")

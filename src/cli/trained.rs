@@ -13,10 +13,11 @@ use rara::scene::layers::{LoadedLayer, SceneLayers};
 pub(super) struct TrainedOptions {
     /// Whether training used antialiasing: on, off or auto
     ///
-    /// The low-pass widens splats, which makes small ones too bright. Trainers with antialiasing reduce the opacity of small
-    /// splats to compensate (3DGS --antialiasing, gsplat and nerfstudio 'antialiased', Mip-Splatting, Brush 'mip'). With on,
-    /// rara does the same. With auto, the default, it does so if the file of a layer or the settings of its training beside
-    /// this file say so. NAME=on applies to one layer only (repeatable).
+    /// The low-pass widens splats, which makes small splats too bright. Trainers with antialiasing compensate by a lower opacity
+    /// of small splats: 3DGS with --antialiasing, gsplat and nerfstudio with 'antialiased', Mip-Splatting, and Brush with 'mip'.
+    /// With on, rara does the same. With auto, the default, rara does so if the file of a layer says that training used
+    /// antialiasing, or if the trainer's settings in the folder of this file say it. NAME=on applies to one layer only
+    /// (repeatable).
     #[arg(long, value_name = "on|off|auto")]
     antialiasing: Vec<String>,
     /// Variance of the low-pass used in training, px^2, or auto
@@ -186,7 +187,11 @@ pub(super) fn lost(format: Format, training: Training) -> Option<String> {
              by rara; write a .glb"
         ));
     }
+    let is_usual =
+        |usual: Training| training == usual.linear(training.linear).alpha_max(training.alpha_max);
     let usual = match format {
+        // Most scenes are trained so, and each program draws them as it does.
+        Format::Gltf if is_usual(Training::default()) => return None,
         Format::Gltf => Training::default().sort_by(SortBy::Distance),
         Format::Spz => Training::default().antialiased(training.antialiased),
         _ => return None,
@@ -200,8 +205,8 @@ pub(super) fn lost(format: Format, training: Training) -> Option<String> {
     match (flags.is_empty(), format) {
         (true, _) => None,
         (false, Format::Gltf) => Some(format!(
-            "glTF has no property for how the scene was trained, {training}; rara finds it in the file's extras, and others \
-             draw {usual}"
+            "glTF has no property that says how a scene was trained: the file's extras tell rara that this one was trained \
+             {training}, and other programs draw it {usual}"
         )),
         (false, _) => Some(format!(
             "{format} cannot say that the scene was trained {training}; draw the file with {}",

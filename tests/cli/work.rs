@@ -148,7 +148,7 @@ fn clip_files_are_the_same_planes() {
             "render @/scene.ply --json --clip-file @/planes.json:d",
         ),
         2,
-        "3 clips, and none of that name",
+        "planes.json has 3 clips: ",
     );
     refused(
         &line(&here, "render @/scene.ply --json --clip-file @/none.json:a"),

@@ -30,10 +30,10 @@ pub struct CameraArgs {
     target: Option<DVec3>,
     /// Direction that is up in the picture, such as -y or 0,-1,0
     ///
-    /// Try y if the scene is upside down, and z or -z if it lies on its side. By default, up is the direction that the
-    /// comment "Vertical Axis" of a .ply gives. Without this comment it is -y, or, if the camera frames the scene, the mean
-    /// up direction of the cameras beside the scene, if there are any. A section has an up direction that depends on its
-    /// axis. If the camera looks along the up direction, z is up instead, or -y if the camera looks along z.
+    /// Try y if the scene is upside down, and z or -z if it lies on its side. The default is the direction in the comment
+    /// "Vertical Axis" of a .ply. Without such a comment, it is -y. If rara frames the scene and finds cameras in the scene's
+    /// folder, the default is their mean up direction. For a section, the default depends on its axis. If the camera looks
+    /// along the up direction, rara takes z instead, or -y if the camera looks along z.
     #[arg(long, value_name = "X,Y,Z|AXIS", value_parser = values::direction, allow_hyphen_values = true)]
     #[arg(conflicts_with_all = ["cameras", "camera"])]
     up: Option<DVec3>,
@@ -56,7 +56,7 @@ pub struct CameraArgs {
     ///
     /// Other formats are a settings.json of SuperSplat, a project.opf of Pix4D and a glTF with cameras. A camera_path.json also
     /// gives its crop box, its background colour, and the pictures per second of a film. If --view is given without --cameras,
-    /// the cameras are those in a file beside the scene, or in the scene's own file.
+    /// the cameras are those of a file in the scene's folder, or of the scene's own file.
     #[arg(long, value_name = "FILE", conflicts_with = "camera")]
     cameras: Option<PathBuf>,
     /// Cameras to draw: all, N, NAME, N..M, or several with commas
@@ -72,10 +72,11 @@ pub struct CameraArgs {
     /// "camera". If --view is given, the file may have a list of cameras.
     #[arg(long, value_name = "FILE")]
     camera: Option<PathBuf>,
-    /// Ignore the distortion of lenses that bend straight lines
+    /// Ignore the lens distortion of the cameras
     ///
-    /// Each camera is drawn as a pinhole camera with the same focal lengths and principal point. The picture matches the
-    /// photograph if a tool removes the distortion of the photograph and keeps its size, focal lengths and principal point.
+    /// Each camera is drawn as a pinhole camera with the same focal lengths and the same principal point, so that straight
+    /// lines stay straight. The picture then matches an undistorted photograph of the same size and with the same focal lengths
+    /// and principal point.
     #[arg(long)]
     undistort: bool,
     /// Clip away what is nearer than this depth, world units
@@ -229,7 +230,7 @@ impl CameraArgs {
         }
         let found = trained_folder::cameras_of(scenes).ok_or_else(|| {
             Failure::Usage(format!(
-                "{flag}: no cameras are in the scene, and no cameras.json or transforms.json is beside it; name one by --cameras"
+                "{flag}: no cameras are in the scene, and no cameras.json or transforms.json is in its folder; name one by --cameras"
             ))
         })?;
         output::say(format_args!(

@@ -40,7 +40,7 @@ impl FrameArgs {
         };
         let background = settings.background.or(said.background);
         output::say(format_args!(
-            "note: what is outside of the crop box of {} is not drawn; take `crop` out of the file to draw all",
+            "note: nothing outside of the crop box of {} is drawn; take `crop` out of the file to draw all",
             file.display()
         ));
         Ok((

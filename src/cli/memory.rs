@@ -46,7 +46,7 @@ pub(super) fn check_picture((width, height): (u32, u32), kept: u64) -> Result<()
     check(
         pixels * PIXEL + kept * KEPT_PIXEL + driver,
         || {
-            let beside = if driver > 0 { " beside a driver" } else { "" };
+            let beside = if driver > 0 { " with a driver" } else { "" };
             format!("a picture of {width}x{height}{beside}")
         },
         "draw a smaller one, or allow more (ulimit -v)",

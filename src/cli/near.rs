@@ -105,7 +105,7 @@ impl NearCut {
     /// The reason for which a picture is empty.
     pub(super) fn why_empty(&self) -> String {
         format!(
-            "the {} in view {} nearer than splats are drawn, in a scene of small units or beside the eye; {}",
+            "the {} in view {} nearer than splats are drawn, in a scene of small units or close to the eye; {}",
             match self.count {
                 1 => "one Gaussian".into(),
                 count => counted(count, "Gaussian"),

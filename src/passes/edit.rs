@@ -110,7 +110,7 @@ impl LayerEdit {
                     && min.cmple(max).all()) =>
             {
                 refuse(format!(
-                    "has bounds from {min} to {max}, which are no box: give finite corners, the least one first"
+                    "has bounds from {min} to {max}, which are not a box: give finite corners, the least one first"
                 ))
             }
             _ => Ok(()),

@@ -279,7 +279,7 @@ impl Gaussians {
         let numbers = 3 * self.sh_coefficients();
         assert!(
             sh.len() == numbers,
-            "{} are no spherical harmonics of degree {}, which have {numbers}",
+            "{} cannot be spherical harmonics of degree {}, which have {numbers}",
             counted(sh.len(), "number"),
             self.0.sh_degree
         );

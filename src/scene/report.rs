@@ -66,7 +66,7 @@ impl LoadReport {
     /// Says that `what` was left out, where there is any: its names.
     pub(crate) fn left_out(&mut self, what: &str, names: &[String]) {
         if !names.is_empty() {
-            self.note(format!("left out what {what}: {}", names.join(", ")));
+            self.note(format!("left out {what}: {}", names.join(", ")));
         }
     }
 

@@ -174,7 +174,7 @@ pub fn save_with(path: &Path, gaussians: &Gaussians, options: &SaveOptions) -> R
 pub fn saved_format(path: &Path) -> Result<Format> {
     Format::of_name(path).ok_or_else(|| {
         Error::Invalid(format!(
-            "{}: the name says no format that is written; it has to end in {}",
+            "{}: the ending of the name chooses the format, and must be one of {}",
             path.display(),
             Format::endings()
         ))

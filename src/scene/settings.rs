@@ -78,8 +78,9 @@ named! {
         /// The number of splats in the pixel, in red, green and blue alike; alpha is as usual. A splat counts if its alpha after the
         /// clip is at least 1/255 and the pixel is not yet saturated. This needs tiles.
         Count = "count",
-        /// The mean of the splats' colours, each weighted by its alpha; alpha is as usual. The order of the splats has no effect. For
-        /// splats that are cross-sections (scene::cross_section), this is the colours on their plane. This needs tiles.
+        /// The mean of the splats' colours, each weighted by its alpha; alpha is as usual. The order of the splats has no effect. If
+        /// the splats are cross-sections of a scene (scene::cross_section), the picture shows the colours on the plane of the
+        /// section. This needs tiles.
         Mean = "mean",
         /// The splat that adds most to the pixel's alpha. The number of its Gaussian in the scene is red plus 65536 times green, blue
         /// is the number of its layer, and alpha is what the splat adds. All are 0 in an empty pixel. This needs tiles, a picture of

@@ -259,7 +259,7 @@ fn projects_of_pix4d() {
     let missing = load_cameras(&project).unwrap_err().to_string();
     assert!(
         missing.contains(
-            "project.opf: this project of Pix4D names in/input.json, which is not beside it"
+            "project.opf: this project of Pix4D names in/input.json, which is not in its folder"
         ),
         "{missing}"
     );
@@ -458,12 +458,18 @@ fn cameras_of_others_are_named() {
             "a trajectory as those of KITTI",
         ),
         ("0, 1, 2, 3\n", "a list of poses or numbers"),
-        ("", "no file of cameras that is read"),
-        ("words", "no file of cameras that is read"),
-        ("{}", "no file of cameras that is read"),
-        (r#"{"width": 8}"#, "no file of cameras that is read"),
-        (r#"[{"a": 1}]"#, "no file of cameras that is read"),
-        ("[1, 2]", "no file of cameras that is read"),
+        ("", "does not read cameras from a file of this kind"),
+        ("words", "does not read cameras from a file of this kind"),
+        ("{}", "does not read cameras from a file of this kind"),
+        (
+            r#"{"width": 8}"#,
+            "does not read cameras from a file of this kind",
+        ),
+        (
+            r#"[{"a": 1}]"#,
+            "does not read cameras from a file of this kind",
+        ),
+        ("[1, 2]", "does not read cameras from a file of this kind"),
         ("{", "line 1 column 1"),
         (
             r#"{"width": 8, "height": 8, "fx": 8, "fy": 8}"#,
@@ -520,7 +526,7 @@ fn a_path_says_its_crop_its_background_and_its_rate() {
         ("{}", "no crop_center"),
         (
             r#"{"crop_center": [0, 0, 0], "crop_scale": [1, 0, 1]}"#,
-            "its crop is no box",
+            "its crop is not a box",
         ),
     ] {
         let message = settings(&format!(r#", "crop": {crop}"#))

@@ -240,7 +240,7 @@ fn a_screenshot_replaces_nothing_and_a_script_that_fails_ends_the_viewer() {
     viewer.say("# a comment\nleap");
     let printed = viewer.printed();
     assert!(
-        printed.contains("line 2: \"leap\" is no action"),
+        printed.contains("line 2: \"leap\" is not an action"),
         "{printed}"
     );
     assert_eq!(viewer.child.0.wait().expect("it ends").code(), Some(2));

@@ -88,7 +88,7 @@ fn collect(
         other => Err(wrong(
             jobs.len() + 1,
             format!(
-                "{other} is no job, which is an object: {{\"scene\": \"a.ply\", \"output\": \"a.png\"}}"
+                "{other} is not a job, which is an object: {{\"scene\": \"a.ply\", \"output\": \"a.png\"}}"
             ),
         )),
     }
@@ -168,9 +168,9 @@ fn series(values: &Value) -> Result<Vec<Value>, String> {
     let text = match values {
         Value::Array(all) => return Ok(all.clone()),
         Value::String(text) => text,
-        other => return Err(format!("{other} is no list and no range")),
+        other => return Err(format!("{other} is neither a list nor a range")),
     };
-    let expected = || format!("'{text}' is no range, as 0..9 or 0..1:11");
+    let expected = || format!("'{text}' is not a range, as 0..9 or 0..1:11");
     let (from, rest) = text.split_once("..").ok_or_else(expected)?;
     let Some((to, count)) = rest.split_once(':') else {
         let (from, to) = (from.trim().parse::<i64>(), rest.trim().parse::<i64>());
@@ -276,7 +276,7 @@ fn words(job: &Map<String, Value>) -> Result<Vec<OsString>, String> {
             ("command", _) => {}
             _ if REFUSED.contains(&flag.as_str()) => {
                 return Err(format!(
-                    "\"{key}\" is no part of a job: rara batch has its own"
+                    "\"{key}\" cannot be a part of a job: rara batch has its own"
                 ));
             }
             ("scene", value) => scenes = texts(key, value)?,

@@ -36,7 +36,7 @@ Examples:
 A job is a command, written as JSON: {\"scene\": \"a.ply\", \"output\": \"a.png\", \"clip\": [\"plane:z=40%\"], \"size\": \
 \"512x512\"}. \"scene\" is a file or a list of layers. Every other key is a flag of rara render, or of rara sweep if the \
 job has \"command\": \"sweep\". The value true stands for a flag that takes no value. A file contains one job, several \
-jobs one after the other, a list of jobs, or {\"jobs\": [...]}; keys beside \"jobs\" apply to all jobs of the list. Paths \
+jobs one after the other, a list of jobs, or {\"jobs\": [...]}; keys next to \"jobs\" apply to all jobs of the list. Paths \
 are relative to the working directory.
 
 \"for\": {\"z\": \"0..100:101\", \"scan\": [\"a\", \"b\"]} makes one job for each combination of its values. 0..9 stands \
@@ -94,8 +94,8 @@ impl Batch {
                 "note: {}: {} and left out",
                 folder.display(),
                 match state.unread {
-                    1 => "1 line is no entry".into(),
-                    _ => format!("{} no entries", counted_are(state.unread as u64, "line")),
+                    1 => "1 line is not an entry".into(),
+                    _ => format!("{} not entries", counted_are(state.unread as u64, "line")),
                 }
             ));
         }
@@ -147,7 +147,7 @@ impl Batch {
                 Ok(name.into())
             }
             (None, None) => Err(Failure::Usage(
-                "jobs from standard input have no file beside which their state is kept: give --state a folder".into(),
+                "jobs from standard input have no file next to which their state could be kept: give --state a folder".into(),
             )),
         }
     }

@@ -36,7 +36,7 @@ pub(super) fn lines(shown: &Shown<'_>) -> String {
     let lines = match camera_flags::flags(&shown.camera) {
         Some(camera) => format!("flags    {camera} {rest}"),
         None => format!(
-            "flags    {rest}\nnote: only a file can say what this camera is; a screenshot (C) writes one beside it, for \
+            "flags    {rest}\nnote: only a file can say what this camera is; a screenshot (C) writes one next to it, for \
              --camera"
         ),
     };

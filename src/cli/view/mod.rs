@@ -47,7 +47,7 @@ rara help view lists what the keys and the mouse do, and the actions of scripts.
 
 The window's title has the time of the last frame on the device, and of its three longest stages;
 T prints the times of all stages. A screenshot is the picture that rara render draws with the same
-camera, clip and settings. Its camera is saved beside it, for rara render --camera. Neither
+camera, clip and settings. Its camera is saved next to it, for rara render --camera. Neither
 overwrites an existing file.
 
 Scripts have an action on each line, and # begins a comment. The window shows the result of an
@@ -82,8 +82,8 @@ pub(super) struct ViewCommand {
     no_outline: bool,
     /// Start without text over the picture
     ///
-    /// The hint and the numbers of the clip are not shown; the key M shows the numbers. Errors and the progress of loading are
-    /// still shown.
+    /// The window shows neither the hint about the keys nor the mode and the clip's numbers; the key M shows these numbers.
+    /// Errors and the progress of loading are still shown.
     #[arg(long)]
     no_text: bool,
     #[command(flatten)]

@@ -46,7 +46,7 @@ pub(super) fn save(picture: &Picture, camera: &Camera, path: &Path) -> Result<()
     if taken(path) {
         return Err(Error::format(
             path,
-            "this file, or the .json of its camera beside it, is there already; a screenshot replaces nothing, choose \
+            "this file, or the .json of its camera next to it, exists already; a screenshot replaces nothing: choose \
              another name",
         ));
     }

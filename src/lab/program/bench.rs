@@ -20,21 +20,21 @@ Examples:
   rara-lab bench scene.ply --clip plane:0,0,1,-2 --size 512x512 --frames 21 --json
   rara-lab bench scene.ply --shapes --only exact
 
-Without --clip, a plane cuts the scene through its middle. Errors are differences from a reference in double precision: mode exact
-with the depth law, and every splat in the form that is exact in perspective. Each choice is also compared with its own picture
-in double precision. A choice that exceeds its error bound there is not timed, and the exit status is 1. The folder of -o gets
-bench.md, bench.csv, bench.json and pareto.svg.")]
+Without --clip, a plane cuts the scene through its middle. The reference for errors is a picture in double precision, in mode
+exact with the depth law, whose splat weights are exact in perspective. Each choice is also compared with a picture of the same
+choice in double precision. If the difference is above the choice's error bound, the choice is not timed, and the exit status is
+1. The command writes bench.md, bench.csv, bench.json and pareto.svg to the folder of -o.")]
 pub(super) struct Bench {
-    /// Frames of each choice; all choices take turns, one frame each
+    /// Number of frames of each choice; the choices take turns after each frame
     #[arg(long, value_name = "N", default_value_t = 11, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     frames: u32,
-    /// Steps of the slow sweep in which popping is measured, each a 300th of the scene
+    /// Number of steps of the sweep that measures popping; a step is a 300th of the scene
     #[arg(long, value_name = "N", default_value_t = 6, value_parser = clap::value_parser!(u32).range(1..=1000))]
     steps: u32,
     /// Measure only the choices with this name in the table (repeatable)
     #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::from(bench::names()))]
     only: Vec<String>,
-    /// Also measure every shape and combinations of shapes, and compare them with a plane through the same point
+    /// Also measure all shapes and combinations, against a plane through the same point
     #[arg(long)]
     shapes: bool,
     /// Folder for the tables and the plot; created if it does not exist

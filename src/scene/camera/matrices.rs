@@ -344,7 +344,7 @@ fn check_finite(matrix: &DMat4, name: &str) -> Result<()> {
 
 fn oblique<T>() -> Result<T> {
     refused(
-        "the projection matrix's row 2 makes depths that are no function of the distance alone: give it a near plane square to the view, as it is before it is made oblique".into(),
+        "the projection matrix's row 2 makes depths that are not a function of the distance alone: give it a near plane square to the view, as it is before it is made oblique".into(),
     )
 }
 

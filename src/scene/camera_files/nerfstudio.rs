@@ -259,7 +259,7 @@ impl Crop {
         let turn =
             DQuat::from_rotation_z(z) * DQuat::from_rotation_y(y) * DQuat::from_rotation_x(x);
         let shape = Shape::cuboid(centre, sides / 2.0, turn);
-        shape.map_err(|error| format!("its crop is no box: {error}; export the path again"))
+        shape.map_err(|error| format!("its crop is not a box: {error}; export the path again"))
     }
 }
 

@@ -119,7 +119,7 @@ fn part<T: DeserializeOwned>(
     let file = folder.join(&resource.uri);
     if !file.is_file() {
         let message = format!(
-            "this project of Pix4D names {}, which is not beside it; put it there, or export the project again",
+            "this project of Pix4D names {}, which is not in its folder; put it there, or export the project again",
             shortened(&resource.uri)
         );
         return Err(Error::format(project, message));

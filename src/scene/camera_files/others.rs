@@ -61,7 +61,7 @@ const KINDS: [(Mark, &str, &str); 30] = rows! {
     Begin(b"<x:xmpmeta"), "XMP, as RealityCapture writes cameras", TO_COLMAP;
     Begin(b"<document"), "XML of Metashape", TO_COLMAP;
     Begin(b"\x93NUMPY"), "an array of NumPy, as LLFF has poses in", "give the COLMAP model that they were made of";
-    Begin(b"SQLite format 3"), "a database of COLMAP, which has no poses", "give the sparse folder beside it";
+    Begin(b"SQLite format 3"), "a database of COLMAP, which has no poses", "give the sparse folder next to it";
     Begin(b"BLENDER"), "a file of Blender", TO_GLTF;
     Begin(b"\x28\xb5\x2f\xfd"), "a compressed file, as Blender writes them", TO_GLTF;
     Begin(b"Kaydara FBX"), "a file of FBX", TO_GLTF;
@@ -89,7 +89,7 @@ pub(super) fn named(text: &[u8], members: &Members) -> String {
              angle, or give another file"
         );
     }
-    "this is no file of cameras that is read; give a cameras.json of 3DGS, a transforms.json or camera_path.json of nerfstudio, a \
+    "rara does not read cameras from a file of this kind; give a cameras.json of 3DGS, a transforms.json or camera_path.json of nerfstudio, a \
      settings.json of SuperSplat, a project.opf of Pix4D, a glTF with cameras, a COLMAP folder or a file of --save-camera"
         .into()
 }

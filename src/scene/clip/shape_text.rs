@@ -39,7 +39,7 @@ impl Shape {
         };
         let Some((name, numbers)) = bare.split_once(':') else {
             return Err(Error::Invalid(format!(
-                "'{}' is no shape; give one like plane:1,0,0,-0.5 or sphere:0,0,0,1",
+                "'{}' is not a shape; give one like plane:1,0,0,-0.5 or sphere:0,0,0,1",
                 shortened(bare)
             )));
         };

@@ -47,7 +47,7 @@ impl<'a> Files<'a> {
         let quoted = shortened(name);
         let folder = self.folder.ok_or_else(|| {
             format!(
-                "it needs the file \"{quoted}\" beside it; load it by its path, not from memory"
+                "it needs the file \"{quoted}\" in its folder; load it by its path, not from memory"
             )
         })?;
         let mut parts = Path::new(name).components();
@@ -56,7 +56,7 @@ impl<'a> Files<'a> {
             || !parts.all(|part| matches!(part, Component::Normal(_)))
         {
             return Err(Failure::Format(format!(
-                "it names \"{quoted}\", which is no name of a file in its own folder; export the scene again"
+                "it names \"{quoted}\", which is not the name of a file in its own folder; export the scene again"
             )));
         }
         Ok(folder.join(name))

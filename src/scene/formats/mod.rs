@@ -156,7 +156,7 @@ fn read_bytes(
             _ => "only 3DGS .ply files and glTF have such",
         };
         return Err(Failure::Format(format!(
-            "this {format} file has no property `{}` beside what a Gaussian is made of; {others}",
+            "this {format} file has no property `{}` next to those of a Gaussian; {others}",
             shortened(property)
         )));
     }

@@ -175,7 +175,7 @@ fn note_rest(document: &Value, archive: &Archive<'_>, report: &mut LoadReport) {
     let files = archive.paths().filter(|path| !is_read(path));
     let mut rest = unread_members(document, |name| ["version", "splats"].contains(&name));
     rest.extend(files.map(|path| shortened(&path.to_string_lossy())));
-    report.left_out("the project has beside its splats", &rest);
+    report.left_out("parts of the project that rara does not use", &rest);
 }
 
 fn splats(document: &Value) -> &[Value] {
@@ -292,7 +292,10 @@ fn layer_of(
         }
     }
     let rest = unread_members(splat, |name| READ.contains(&name));
-    loaded.report.left_out("the project says of a splat", &rest);
+    loaded.report.left_out(
+        "values of the project's splats that rara does not use",
+        &rest,
+    );
     Ok((loaded, properties))
 }
 

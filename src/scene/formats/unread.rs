@@ -40,8 +40,8 @@ const KINDS: &[(usize, &[&[u8]], &str, &str)] = &rows! {
     8, &[b"WEBP"], "a WebP picture", "give the meta.json or the folder that it belongs to";
     0, &[b"\x89PNG", b"\xff\xd8\xff", b"GIF8", b"II*\0", b"MM\0*", b"\x76\x2f\x31\x01"], "a picture", PICTURE;
     4, &[b"ftyp"], "a film or a picture", PICTURE;
-    0, &[b"\x28\xb5\x2f\xfd"], "compressed with zstd", UNPACK;
-    0, &[b"\xfd7zXZ", b"BZh", b"\x04\x22\x4d\x18"], "compressed with xz, bzip2 or lz4", UNPACK;
+    0, &[b"\x28\xb5\x2f\xfd"], "a file compressed with zstd", UNPACK;
+    0, &[b"\xfd7zXZ", b"BZh", b"\x04\x22\x4d\x18"], "a file compressed with xz, bzip2 or lz4", UNPACK;
     0, &[b"7z\xbc\xaf", b"Rar!"], "a 7z or RAR archive", UNPACK;
     257, &[b"ustar"], "a tar archive", UNPACK;
     0, &[b"["], "a JSON list, perhaps of cameras", "give cameras by --cameras, and clips by --clip-file";
@@ -71,7 +71,7 @@ const DOCUMENTS: &[(&str, &str, &str)] = &rows! {
 /// The refusal of a file that is of this kind.
 fn refusal(what: &str, to_do: &str) -> String {
     format!(
-        "this is no scene of a format that is read, it is {what}: {to_do} ({} are read)",
+        "this is not a scene in a format that rara reads, but {what}: {to_do} (rara reads {})",
         Format::readable()
     )
 }
@@ -102,10 +102,10 @@ pub(super) fn file(start: &[u8], total: u64) -> String {
         return refusal("a mesh", POINTS);
     }
     let (what, to_do) = match start {
-        [] => ("empty", "get it again"),
+        [] => ("an empty file", "get it again"),
         _ => (
-            "of a kind that its first bytes do not tell",
-            "convert it to one that is, for example with splat-transform",
+            "a file of an unknown kind",
+            "convert it to one of them, for example with splat-transform",
         ),
     };
     refusal(what, to_do)

@@ -84,7 +84,7 @@ fn the_first_gaussians_say_whether_a_set_is_antialiased() {
 }
 
 #[test]
-#[should_panic(expected = "3 numbers are no spherical harmonics of degree 1")]
+#[should_panic(expected = "3 numbers cannot be spherical harmonics of degree 1")]
 fn harmonics_of_another_degree_are_misuse() {
     let mut made = Gaussians::new(arrays()).expect("they fit");
     made.push(Vec3::Y, Vec3::ONE, Quat::IDENTITY, 0.5, &[1.0; 3]);

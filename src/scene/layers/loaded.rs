@@ -170,7 +170,7 @@ impl Extra {
         let count = counted(names.len() as u64, "property");
         (!names.is_empty()).then(|| {
             format!(
-                "left out what the scene has beside what is drawn, {count}: {}{keeps}",
+                "left out {count} of the scene that drawing does not use: {}{keeps}",
                 names.join(", ")
             )
         })

@@ -103,7 +103,7 @@ impl<R: Read> Lines<R> {
             }
             if read == MAX_LINE && self.line.last() != Some(&self.end) {
                 return Err(Failure::Format(format!(
-                    "line {number} is longer than {MAX_LINE} bytes; this is no ascii PLY, export the scene again"
+                    "line {number} is longer than {MAX_LINE} bytes; this is not an ascii PLY; export the scene again"
                 )));
             }
             if !self.line.trim_ascii().is_empty() {
@@ -137,7 +137,7 @@ fn parse(line: &[u8], fields: &[Field], row: &mut GaussianRow) -> Result<(), Str
                 let items = number(next()?)?;
                 if !(items >= 0.0 && items.fract() == 0.0) {
                     return Err(format!(
-                        "{items} is no length of a list; export the scene again"
+                        "{items} cannot be the length of a list; export the scene again"
                     ));
                 }
                 // The loop ends with the line at the latest, whatever the length says.

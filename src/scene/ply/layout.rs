@@ -264,7 +264,7 @@ fn asked_properties(
                     (false, more) => format!("{} and {more} more", others.join(", ")),
                 };
                 return Err(format!(
-                    "the `vertex` element has no property `{quoted}`; beside those of a Gaussian it has {has}; name \
+                    "the `vertex` element has no property `{quoted}`; next to those of a Gaussian it has {has}; name \
                      another, or select in a layer whose file has it"
                 ));
             }

@@ -89,7 +89,7 @@ pub(super) fn read(
     if packed::is(&header) {
         if let Some(property) = asked.iter().find(|asked| **asked != ALL) {
             return Err(format(format!(
-                "a compressed PLY has no property `{}` beside what a Gaussian is made of; only plain 3DGS .ply files have \
+                "a compressed PLY has no property `{}` next to those of a Gaussian; only plain 3DGS .ply files have \
                  such",
                 rara_base::error::shortened(property)
             )));
@@ -181,7 +181,7 @@ pub(super) fn read(
         ));
         if unusable > 0 {
             loaded.report.note(format!(
-                "{unusable} of {} are no finite numbers, and smooth nothing",
+                "{unusable} values of {} are not finite numbers, and smooth nothing",
                 trained::FILTER
             ));
         }

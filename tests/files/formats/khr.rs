@@ -373,7 +373,7 @@ fn attributes_are_properties_that_can_be_asked_for() {
         loaded
             .report
             .to_string()
-            .contains("beside what is drawn: _CLASSIFICATION")
+            .contains("that drawing does not use: _CLASSIFICATION")
     );
     let error = asset.asked(&["label"]).unwrap_err().to_string();
     assert!(error.contains("no property `label`"), "{error}");
@@ -631,7 +631,7 @@ fn what_is_left_out_is_said() {
     let report = report.to_string();
     for says in [
         "left out 1 skin of the glTF",
-        "beside what is drawn: KHR_gaussian_splatting:SH_DEGREE_4_COEF_0, _LABEL, morph targets",
+        "that drawing does not use: KHR_gaussian_splatting:SH_DEGREE_4_COEF_0, _LABEL, morph targets",
     ] {
         assert!(report.contains(says), "{report}");
     }

@@ -55,7 +55,7 @@ fn what_is_no_job_is_refused_by_its_number_with_the_remedy() {
         json!([scene, job])
     };
     for (value, parts) in [
-        (json!([scene, 7]), ["job 2", "is no job"]),
+        (json!([scene, 7]), ["job 2", "is not a job"]),
         (json!([{"output": "b"}]), ["job 1", "\"scene\" is missing"]),
         (with("command", "bake".into()), ["job 2", "neither"]),
         (

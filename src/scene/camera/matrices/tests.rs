@@ -351,12 +351,12 @@ fn what_is_no_camera_is_refused_by_name() {
         (
             view,
             with(projection, 2, 0, 0.3),
-            "no function of the distance alone",
+            "not a function of the distance alone",
         ),
         (
             view,
             with(flat, 2, 1, 0.3),
-            "no function of the distance alone",
+            "not a function of the distance alone",
         ),
         (view, with(projection, 2, 3, 0.0), "its depth is"),
         (

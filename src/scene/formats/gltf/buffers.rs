@@ -166,7 +166,7 @@ impl<'a> Buffers<'a> {
 
 /// The bytes of `TYPE;base64,TEXT`.
 fn from_data(data: &str) -> Result<Vec<u8>, String> {
-    let wrong = || "a buffer in the glTF's text is no base64; export the scene again".to_owned();
+    let wrong = || "a buffer in the glTF's text is not base64; export the scene again".to_owned();
     let (kind, text) = data.split_once(',').ok_or_else(wrong)?;
     if !kind.ends_with(";base64") {
         return Err(wrong());

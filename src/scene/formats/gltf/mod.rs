@@ -391,7 +391,7 @@ fn read_primitive(
     let parts = [("indices", "indices"), ("targets", "morph targets")];
     let parts = parts.iter().filter(|(key, _)| primitive.get(key).is_some());
     let left = left.chain(parts.map(|(_, what)| *what)).map(shortened);
-    let what = "the Gaussians have beside what is drawn";
+    let what = "parts of the Gaussians that drawing does not use";
     made.report.left_out(what, &left.collect::<Vec<_>>());
     if has_logarithms {
         made.report.note(

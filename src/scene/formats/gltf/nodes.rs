@@ -122,7 +122,7 @@ pub(super) fn meshes(
         let is_visible = is_shown && visibility.and_then(Value::as_bool) != Some(false);
         let own = parent.of_inner(&transform(node).map_err(wrong)?)?;
         if let Some(mesh) = node.get("mesh") {
-            let mesh = number(mesh).ok_or_else(|| wrong("has a mesh that is no number"))?;
+            let mesh = number(mesh).ok_or_else(|| wrong("has a mesh that is not a number"))?;
             let mut add = |transform| {
                 found.push(Drawn {
                     node: Some(at),

@@ -118,8 +118,8 @@ impl<'a> Meta<'a> {
             Some(Some(2.0)) => false,
             Some(other) => {
                 return Err(format!(
-                    "this is SOG of version {}; 1 and 2 are read, export the scene as one of these",
-                    other.map_or("that is no number".into(), |version| format!("{version:e}"))
+                    "this is SOG of version {}; rara reads versions 1 and 2: export the scene as one of these",
+                    other.map_or("an unknown number".into(), |version| format!("{version:e}"))
                 ));
             }
         };
@@ -140,7 +140,7 @@ impl<'a> Meta<'a> {
             .filter(|&count| count <= u64::from(u32::MAX))
             .ok_or_else(|| {
                 format!(
-                    "its \"count\" is no number of Gaussians up to {}; export the scene again",
+                    "its \"count\" is not a whole number from 0 to {}; export the scene again",
                     u32::MAX
                 )
             })?;
@@ -212,7 +212,7 @@ fn whole(part: &Value, key: &str, most: u64) -> Result<Option<u64>, String> {
     };
     let number = said.as_u64().filter(|number| (1..=most).contains(number));
     number.map(Some).ok_or_else(|| {
-        format!("the \"{key}\" of shN is no number from 1 to {most}; export the scene again")
+        format!("the \"{key}\" of shN is not a number from 1 to {most}; export the scene again")
     })
 }
 

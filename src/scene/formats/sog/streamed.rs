@@ -83,7 +83,7 @@ fn load(
     read: &mut HashSet<PathBuf>,
 ) -> Result<FormatOutput, Failure> {
     let name = name.as_str().ok_or_else(|| {
-        "a file name in lod-meta.json is no text; export the scene again".to_owned()
+        "a file name in lod-meta.json is not text; export the scene again".to_owned()
     })?;
     let path = files.path(name)?;
     // Its parts, since there are many ways to write one path.

@@ -149,7 +149,7 @@ fn one_scene_in_a_wrapper_is_read() {
         (archive(&[("archive/data.pkl", note)]), "PyTorch"),
         (archive(&[("means.npy", note)]), "NumPy"),
         (gzip(&vec![0; 8 << 20]), "which no scene compresses to"),
-        (gzip(note), "no scene of a format that is read"),
+        (gzip(note), "not a scene in a format that rara reads"),
     ] {
         let error = load(wrong).unwrap_err().to_string();
         assert!(error.contains(says), "{error}");

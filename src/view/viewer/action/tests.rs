@@ -75,7 +75,7 @@ fn what_means_nothing_is_refused_with_what_would() {
         ("mode soft", "none, hard"),
         ("resize 640", "like 1024x768"),
         ("quit now", "takes nothing"),
-        ("", "is no action"),
+        ("", "is not an action"),
     ] {
         let error = text.parse::<Action>().expect_err(text);
         assert!(error.contains(says), "{text}: {error}");

@@ -25,12 +25,12 @@ rara_base::named! {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Sections")]
 pub(super) struct LabelArgs {
-    /// Draw a bar of a round length with its number, and UNIT if one is given, as in --scale-bar=mm
+    /// Draw a bar of a round length; --scale-bar=mm names the unit
     ///
-    /// The number is in world units. For sections and for cameras without perspective.
+    /// The number at the bar is in world units. For sections and for cameras without perspective.
     #[arg(long, value_name = "UNIT", num_args = 0..=1, require_equals = true, default_missing_value = "")]
     scale_bar: Option<String>,
-    /// Write at the edges of the picture which direction is there
+    /// Write at the edges which direction is there
     ///
     /// For sections and for cameras without perspective.
     #[arg(long, value_name = "SYSTEM", value_parser = values::named::<Letters>())]

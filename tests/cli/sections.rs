@@ -17,6 +17,14 @@ fn drawn(here: &Path, flags: &str) -> Vec<u8> {
     fs::read(here.join("drawn.exr")).expect("a picture")
 }
 
+/// The same of flags in which an @ is one.
+fn drawn_at(here: &Path, flags: &str) -> Vec<u8> {
+    let here_text = here.to_str().expect("the test folder's name is text");
+    let words = format!("render {here_text}/scene.ply -o {here_text}/drawn.exr {SIZE} {flags}");
+    done(super::rara(words.split(' ')));
+    fs::read(here.join("drawn.exr")).expect("a picture")
+}
+
 /// The robust bounds of `scene.ply`, least and greatest coordinates.
 fn bounds(here: &Path) -> [[f64; 3]; 2] {
     let info = document(line(here, "info @/scene.ply --json"));
@@ -82,7 +90,7 @@ fn a_section_faces_its_plane() {
             let section = format!("--section {flip}{}=0.4 --section-scale 0.0625", names[0]);
             let half = drawn(&here, &format!("{section} --save-camera @/flat.json"));
             let placed = section.replace("=0.4", &format!("@{at}"));
-            assert!(half == drawn(&here, &placed), "{placed}");
+            assert!(half == drawn_at(&here, &placed), "{placed}");
             let file = fs::read(here.join("flat.json")).expect("a camera");
             let saved: Value = serde_json::from_slice(&file).expect("JSON");
             let number = |value: &Value| value.as_f64().expect("a number");
@@ -123,8 +131,8 @@ fn a_section_faces_its_plane() {
             &format!("--section {name} --clip-file @/planes.json"),
         )
     };
-    assert!(low("low") == drawn(&here, "--section z@-0.25"));
-    assert!(low("!low") == drawn(&here, "--section !z@-0.25"));
+    assert!(low("low") == drawn_at(&here, "--section z@-0.25"));
+    assert!(low("!low") == drawn_at(&here, "--section !z@-0.25"));
     assert!(plain != drawn(&here, "--section z=0.4 --up 1,0,0"));
     // What is up along the view says nothing of the picture.
     assert!(plain == drawn(&here, "--section z=0.4 --up z"));

@@ -182,8 +182,8 @@ fn what_conflicts_with_a_need_does_not_meet_it() {
             "--path orbit --section-thickness 1",
             "without --section: give that in place of --path,",
         ),
-        ("--panorama --outline 1,1,1", "without --section: give that"),
-        ("--frames 9", "without --path: give that too,"),
+        ("--panorama --outline 1,1,1", "without --section, --clip"),
+        ("--frames 9", "without --path or --from: give that too,"),
     ] {
         let words: Vec<_> = words.split(' ').collect();
         let refused = check(&render, &typed(&render, &words)).expect_err("it is refused");

@@ -21,10 +21,10 @@ fn shares_are_one_or_equal_steps() {
 #[test]
 fn what_is_no_section_is_refused_with_what_would_be() {
     for (text, says) in [
-        ("", "axial=0.5"),
-        ("axial", "axial=0.5"),
+        ("", "axial=50%"),
+        ("axial", "axial=50%"),
         ("w=0.5", "sagittal"),
-        ("z=2", "from 0 to 1"),
+        ("z=2", "give 0 to 1"),
         ("z=0.1..0.9", "FROM..TO:COUNT"),
         ("z=0.1..0.9:x", "number of sections"),
     ] {

@@ -189,6 +189,8 @@ pub(super) fn with_tip(mut error: Error, program: &Command, words: &[OsString]) 
         return error;
     };
     error.remove(ContextKind::SuggestedArg);
+    let mut program = program.clone();
+    program.build(); // without which flags have no text
     let mut parts = words
         .iter()
         .filter_map(|word| program.find_subcommand(word));
@@ -196,12 +198,12 @@ pub(super) fn with_tip(mut error: Error, program: &Command, words: &[OsString]) 
     let flags = flags.filter(|flag| flag.get_long().is_some_and(|long| meant.contains(&long)));
     let tips = flags.map(|flag| {
         let summary = flag.get_help().map(ToString::to_string);
-        let name = flag.to_string();
-        format!("use {name}: {}", summary.unwrap_or_default()).into()
+        format!("{flag} ({})", summary.unwrap_or_default())
     });
-    let tips: Vec<StyledStr> = tips.collect();
+    let tips: Vec<String> = tips.collect();
     if !tips.is_empty() {
-        error.insert(ContextKind::Suggested, ContextValue::StyledStrs(tips));
+        let tip = format!("use {}", tips.join(" or ")).into();
+        error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip]));
     }
     error
 }

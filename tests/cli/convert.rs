@@ -289,7 +289,7 @@ fn what_cannot_be_written_is_refused_before_anything_is_read() {
     refused(
         &line(&here, "convert @/scene.ply -o @/a.splat"),
         2,
-        "it has to end in",
+        "the ending of the name chooses the format, and must be one of",
     );
     refused(
         &line(&here, "convert @/scene.ply -o @/scene.ply"),
@@ -458,7 +458,9 @@ fn further_properties_are_carried_or_said() {
             &format!("convert {scenes} -o @/both.ply"),
         )));
         assert!(
-            said.contains("4 properties: class, label, marks, tags"),
+            said.contains(
+                "4 properties of the scene that drawing does not use: class, label, marks, tags"
+            ),
             "{said}"
         );
         let bytes = fs::read(here.join("both.ply")).expect("a scene");
@@ -472,7 +474,7 @@ fn further_properties_are_carried_or_said() {
     for other in ["c.spz", "c.sog", "c.glb", "c.compressed.ply"] {
         let said = stderr(&done(line(&here, &format!("convert @/a.ply -o @/{other}"))));
         assert!(
-            said.contains("3 properties: label, confidence, marks; a .ply keeps"),
+            said.contains("3 properties of the scene that drawing does not use: label, confidence, marks; a .ply keeps"),
             "{said}"
         );
     }

@@ -241,6 +241,11 @@ fn a_wrong_command_line_is_status_2_and_one_line() {
             "no command bench here; rara-lab has the commands that measure",
         ),
         ("help bench", "rara-lab has the commands that measure"),
+        (
+            "render a.ply --width=640",
+            "tip: use --size <WxH> (Picture size",
+        ),
+        ("render a.ply --near 1", " or --near-cut <DEPTH> (Leave out"),
         ("render a.ply -o a.png --show count", ".exr"),
         ("sweep a.ply --clip-normal x -o frames --show count", ".exr"),
     ] {

@@ -202,7 +202,7 @@ fn selections_take_what_others_leave_and_go_by_layers() {
         (
             "strong=labl=3",
             1,
-            "no property `labl`; beside those of a Gaussian it has nx, ny, nz",
+            "no property `labl`; next to those of a Gaussian it has nx, ny, nz",
         ),
     ] {
         refused(

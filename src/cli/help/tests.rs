@@ -120,35 +120,32 @@ fn flags_of_other_programs_have_a_tip_and_no_nonsense() {
     for (line, tip) in [
         (
             "rara render a.ply --width 9",
-            "tip: use --size <WxH>: Picture",
+            "tip: use --size <WxH> (Picture",
         ),
         (
             "rara render a.ply --height=9",
-            "tip: use --size <WxH>: Picture",
+            "tip: use --size <WxH> (Picture",
         ),
         (
             "rara sweep a.ply --resolution 9",
-            "tip: use --size <WxH>: Picture",
+            "tip: use --size <WxH> (Picture",
         ),
         (
             "rara render a.ply --near 1",
-            "tip: use --clip-near <DEPTH>: Clip",
+            "tip: use --clip-near <DEPTH> (Clip",
         ),
-        (
-            "rara render a.ply --near 1",
-            "tip: use --near-cut <DEPTH>: Leave",
-        ),
+        ("rara render a.ply --near 1", "or --near-cut <DEPTH> (Leave"),
         (
             "rara render a.ply --far 1",
-            "tip: use --clip-far <DEPTH>: Clip",
+            "tip: use --clip-far <DEPTH> (Clip",
         ),
         (
             "rara render a.ply --fov 50",
-            "tip: use --fov-y <DEG>: Vertical",
+            "tip: use --fov-y <DEG> (Vertical",
         ),
         (
             "rara convert a.ply --opacity 1",
-            "tip: use --min-opacity <A>: Leave",
+            "tip: use --min-opacity <A> (Leave",
         ),
         (
             "rara render a.ply --bg 1,1,1",
@@ -156,7 +153,7 @@ fn flags_of_other_programs_have_a_tip_and_no_nonsense() {
         ),
         (
             "rara render a.ply --out a.png",
-            "tip: use --output <OUT>: A pic",
+            "tip: use --output <OUT> (A pic",
         ),
         (
             "rara render a.ply --clips x",

@@ -103,7 +103,7 @@ fn properties_that_no_file_gives_are_refused() {
         for (name, words) in [
             (
                 "labl",
-                "no property `labl`; beside those of a Gaussian it has label, history",
+                "no property `labl`; next to those of a Gaussian it has label, history",
             ),
             ("history", "`history` is a list"),
             ("x", "`x` is what a Gaussian is made of"),

@@ -47,7 +47,7 @@ The compared pictures show the baked Gaussians before a format rounds them.
 Several scenes are joined and baked as one. With {{}} in OUT, each scene is baked by itself, into a file with the scene's name in
 place of {{}}.", Format::endings()))]
 pub(super) struct Bake {
-    /// File for the baked scene; its extension chooses the format; {} becomes the name of each SCENE
+    /// File to write; its extension chooses the format; {} becomes the name of each SCENE
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
     /// Replace the splats that this mode would cut in a picture

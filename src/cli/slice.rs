@@ -40,7 +40,7 @@ pub(super) struct SliceArgs {
     #[arg(long, value_name = "PX", value_parser = values::positive, default_value_t = 2.0)]
     outline_width: f32,
     /// Tint each cut surface along its edge
-    #[arg(long, value_name = "R,G,B", value_parser = values::colour)]
+    #[arg(long, value_name = "COLOUR", value_parser = values::colour)]
     rim: Option<[f32; 3]>,
     /// Width of the tint of --rim, pixels
     #[arg(long, value_name = "PX", value_parser = values::positive, default_value_t = 24.0)]

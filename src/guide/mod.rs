@@ -28,7 +28,7 @@ chapters! {
     building,
     c shows "mesh",
     changes,
-    command_line,
+    command_line shows "section",
     embedding shows "linear" "stored",
     formats,
     frame,

@@ -23,7 +23,7 @@ pub(super) struct SectionArgs {
     /// AXIS@POSITION cuts at a position along the axis, world units. With FROM..TO:COUNT in place of one of these there are COUNT
     /// sections in equal steps. Axes are z or axial, y or coronal, x or sagittal. NAME is a plane of a --clip-file; the other
     /// clips of this file are then not used. A leading ! looks from the other side. The picture has no perspective.
-    #[arg(long, value_name = "AXIS=SHARE|AXIS@POSITION|NAME", value_parser = wanted, allow_hyphen_values = true)]
+    #[arg(long, value_name = "AXIS=SHARE|NAME", value_parser = wanted, allow_hyphen_values = true)]
     section: Vec<SectionRequest>,
     /// Thickness of the kept slab, world units [default: no limit]
     #[arg(long, value_name = "T", value_parser = values::positive, allow_hyphen_values = true)]

@@ -766,9 +766,9 @@ fn unusable_files_are_refused_with_a_sentence() {
     let frame = format!(r#""frames": [{{"transform_matrix": {matrix}}}]"#);
     let inria = inria_entry("a");
     for (text, words) in [
-        ("".into(), "no file of cameras"),
+        ("".into(), "does not read cameras"),
         ("[]".into(), "no camera"),
-        ("{}".into(), "no file of cameras"),
+        ("{}".into(), "does not read cameras"),
         ("[1, 2".into(), "line 1"),
         (format!("[{}]", inria.replace("1000", "0")), "width 0"),
         (format!("[{}]", inria.replace("1000", "0.5")), "width 0.5"),

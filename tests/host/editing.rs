@@ -288,9 +288,9 @@ fn edits_of_what_is_not_there_are_refused() {
             LayerEdit::of(10..111).scales(true),
             "needs an editor for as many",
         ),
-        (0, all.bounds(box_of(1.0, 0.0)), "no box"),
-        (0, all.bounds(box_of(f64::NAN, 0.0)), "no box"),
-        (0, all.bounds(box_of(0.0, 1e300)), "no box"),
+        (0, all.bounds(box_of(1.0, 0.0)), "not a box"),
+        (0, all.bounds(box_of(f64::NAN, 0.0)), "not a box"),
+        (0, all.bounds(box_of(0.0, 1e300)), "not a box"),
     ] {
         let error = edit(&mut scene, index, &refused)
             .expect_err(says)

@@ -172,15 +172,15 @@ fn what_conflicts_with_a_need_does_not_meet_it() {
     for (words, says) in [
         (
             "--section z=0.5 --frames 9",
-            "without --path: give that in place of --section,",
+            "without --path or --from: give that too,",
         ),
         (
-            "--path orbit --slice",
-            "without --section: give that in place of --path,",
+            "--panorama --slice",
+            "without --section: give that in place of --panorama,",
         ),
         (
-            "--path orbit --section-thickness 1",
-            "without --section: give that in place of --path,",
+            "--panorama --section-thickness 1",
+            "without --section: give that in place of --panorama,",
         ),
         ("--panorama --outline 1,1,1", "without --section, --clip"),
         ("--frames 9", "without --path or --from: give that too,"),

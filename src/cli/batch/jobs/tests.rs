@@ -67,7 +67,7 @@ fn what_is_no_job_is_refused_by_its_number_with_the_remedy() {
             with("for", "0..9".into()),
             ["job 2", "\"for\" is an object"],
         ),
-        (with("for", json!({"z": "0.."})), ["z", "no range"]),
+        (with("for", json!({"z": "0.."})), ["z", "not a range"]),
         (with("for", json!({"z": "0..9999999"})), ["z", "more than"]),
         (
             with("for", json!({"z": "0..1:9999999"})),

@@ -42,7 +42,7 @@ fn each<C: Fn(&mut LoadedLayer)>(
         let change = change(text[end + 1..].trim()).map_err(wrong)?;
         named(loaded, flag, &text[..end])?
             .into_iter()
-            .for_each(|layer| change(layer));
+            .for_each(change);
     }
     Ok(())
 }

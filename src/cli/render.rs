@@ -106,7 +106,7 @@ const FRAMES: u32 = 120;
 
 enum Pictures {
     /// Pictures of cameras, under one clip, and perhaps one that moves.
-    Views(Views, Regions, Option<Movement>),
+    Views(Views, Regions, Option<Box<Movement>>),
     Sections(Sections),
 }
 
@@ -290,7 +290,7 @@ impl Render {
                         "--panorama is what is seen from one place: say which by --eye, --camera or --cameras".into(),
                     ));
                 }
-                Pictures::Views(views, clip, movement)
+                Pictures::Views(views, clip, movement.map(Box::new))
             }
         };
         let numbers = pictures.numbers();

@@ -38,11 +38,14 @@ fn a_command_lists_all_of_its_flags_by_their_headings() {
             rest = &rest[at.unwrap_or_else(|| panic!("{}: {heading}", part.get_name()))..];
         }
         for arg in part.get_arguments() {
-            let name = arg.get_long().map(|long| format!("--{long} "));
+            let names = arg
+                .get_long()
+                .map(|long| [" ", "["].map(|end| format!("--{long}{end}")));
             let summary = arg.get_help().map(ToString::to_string).unwrap_or_default();
             let word = summary.split(' ').next().unwrap_or_default();
             let mut lines = text.lines();
-            let is_of = |line: &&str| name.as_ref().is_none_or(|name| line.contains(name));
+            let is_named = |line: &str| names.iter().flatten().any(|name| line.contains(name));
+            let is_of = |line: &&str| names.is_none() || is_named(line);
             assert!(
                 lines.any(|line| is_of(&line) && line.contains(word)),
                 "{arg:?}"

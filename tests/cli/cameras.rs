@@ -204,7 +204,7 @@ fn ranges_and_lists_choose_cameras() {
         ),
         (
             "sweep @/scene.ply --clip-normal 0,0,1 --view 1..2",
-            "a sweep has one camera, and these are 2",
+            "a sweep without --path has one camera, and these are 2",
         ),
     ] {
         let output = line(&here, words);

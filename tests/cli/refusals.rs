@@ -137,7 +137,7 @@ fn a_wrong_command_line_is_status_2_and_one_line() {
             "render x.ply -o a.png --ortho fit --eye 1,2,3",
             "give a height",
         ),
-        ("render x.ply -o a.png --section axial", "axial=0.5"),
+        ("render x.ply -o a.png --section axial", "axial=50%"),
         ("render x.ply -o a.png --section w=0.5", "sagittal"),
         ("render x.ply -o a.png --section z=1.5", "from 0 to 1"),
         (

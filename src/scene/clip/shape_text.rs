@@ -135,8 +135,8 @@ mod tests {
     #[test]
     fn nonsense_is_refused_and_says_what_is_missing() {
         for (text, words) in [
-            ("", "no shape"),
-            ("plane", "no shape"),
+            ("", "not a shape"),
+            ("plane", "not a shape"),
             ("plane:1,2,3", "4 numbers"),
             ("plane:0,0,0,1", "normal"),
             ("plane:nan,0,0,1", "'nan'"),

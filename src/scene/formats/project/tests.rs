@@ -55,8 +55,8 @@ fn a_project_is_what_is_visible_of_it_placed_and_coloured() {
     for says in [
         "deleted",
         "hides its splat 'b'",
-        "a splat: contrast",
-        "its splats: camera",
+        "does not use: contrast",
+        "does not use: camera",
     ] {
         assert!(lines.contains(says), "{lines} lacks {says}");
     }

@@ -66,8 +66,8 @@ pub struct SceneArgs {
     layer_opacity: Vec<String>,
     /// Mix a colour into one layer, as in bone=gold or bone=#ffe0c0:30% (repeatable)
     ///
-    /// SHARE, from 0 to 1 or from 0% to 100%, says how much of the colour there is; by default half.
-    #[arg(long, value_name = "NAME=COLOUR[:SHARE]")]
+    /// A share behind a colon, from 0 to 1 or from 0% to 100%, says how much of the colour there is; by default half.
+    #[arg(long, value_name = "NAME=COLOUR")]
     layer_tint: Vec<String>,
     /// Read opacities or scales of a .ply as plain values, not as logits or logarithms
     ///

@@ -58,8 +58,9 @@ const MOST: u32 = 100_000;
 
 /// A share of the scene.
 fn share(text: &str) -> Result<f64, String> {
-    values::exact_share(text.trim())
-        .map_err(|_| format!("'{text}' is not a share of the scene: give 0 to 1, or 0% to 100%"))
+    values::exact_share(text.trim()).map_err(|_| {
+        format!("'{text}' is not a share of the scene from 0 to 1, or from 0% to 100%")
+    })
 }
 
 /// A position along an axis.

@@ -24,7 +24,7 @@ fn what_is_no_section_is_refused_with_what_would_be() {
         ("", "axial=50%"),
         ("axial", "axial=50%"),
         ("w=0.5", "sagittal"),
-        ("z=2", "give 0 to 1"),
+        ("z=2", "from 0 to 1"),
         ("z=0.1..0.9", "FROM..TO:COUNT"),
         ("z=0.1..0.9:x", "number of sections"),
     ] {

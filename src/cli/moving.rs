@@ -1,13 +1,16 @@
 //! A clip that moves: a plane across the scene, or any region to another.
 
+use std::cell::LazyCell;
+
 use clap::Args;
 use glam::DVec3;
 use rara::clip::Expression;
 use rara::scene::extent_along;
 use rara::scene::layers::Region;
-use rara::{Bounds, Plane, Scene};
+use rara::{Bounds, Clip, ClipOp, Plane, Scene};
 use rara_shots::Ease;
 
+use super::clip::joined;
 use super::failure::Failure;
 
 /// Where a region moves.
@@ -26,19 +29,11 @@ pub(super) struct MovingArgs {
 /// The most steps that are tried before the scene is read.
 const MOST_TRIED: u32 = 1000;
 
-/// What moves, before the scene is known.
+/// A clip that moves: between regions as they were typed, or between the expressions that these are in a scene.
 #[derive(Debug)]
-pub(super) struct Movement {
-    target: Target<Region>,
-    ease: Ease,
-    frames: u32,
-}
-
-/// What moves in a scene.
-#[derive(Debug)]
-pub(super) struct Moving {
-    target: Target<Expression>,
-    /// Where it begins and ends: of a plane along its normal, of a region the shares of its way.
+pub(super) struct Moving<R> {
+    target: Target<R>,
+    /// The positions at which it begins and ends: of a plane along its normal, of a region the shares of its way.
     range: (f64, f64),
     ease: Ease,
     frames: u32,
@@ -53,13 +48,13 @@ enum Target<R> {
 }
 
 impl MovingArgs {
-    /// What the flags move in so many frames, if anything: a plane of this normal, or a region. What has nothing between its
-    /// begin and its end is refused.
+    /// The clip that the flags move in so many frames, if any: a plane of this normal, or a region. Flags between whose clips
+    /// there is nothing are refused.
     pub(super) fn meant(
         &self,
         normal: Option<DVec3>,
         (frames, ease): (u32, Ease),
-    ) -> Result<Option<Movement>, Failure> {
+    ) -> Result<Option<Moving<Region>>, Failure> {
         let target = match (normal, &self.from, &self.to) {
             (Some(normal), ..) => {
                 Target::Plane(Plane::new(normal, 0.0).map_err(Failure::usage)?.normal())
@@ -67,56 +62,33 @@ impl MovingArgs {
             (None, Some(from), Some(to)) => Target::Region(from.clone(), to.clone()),
             _ => return Ok(None),
         };
-        let tried = frames.min(MOST_TRIED);
-        let example = Moving {
-            target: target.map(|region| Ok(region.example().clone()))?,
+        let moving = Moving {
+            target,
             range: (0.0, 1.0),
             ease,
-            frames: tried,
+            frames,
         };
-        for index in 0..tried {
+        let mut example = moving.map(|region| Ok(region.example().clone()))?;
+        example.frames = frames.min(MOST_TRIED);
+        for index in 0..example.frames {
             example.at(index).map_err(Failure::usage)?;
         }
-        Ok(Some(Movement {
-            target,
-            ease,
-            frames,
-        }))
+        Ok(Some(moving))
     }
 }
 
-impl Movement {
-    /// The movement in a scene.
-    pub(super) fn in_scene(&self, scene: &Scene<'_>) -> rara::Result<Moving> {
-        let bounds = std::cell::LazyCell::new(|| Bounds::of(scene));
+impl<R> Moving<R> {
+    /// The same with other regions.
+    fn map<T>(&self, change: impl Fn(&R) -> rara::Result<T>) -> rara::Result<Moving<T>> {
         Ok(Moving {
-            target: self.target.map(|region| region.resolve(|| *bounds))?,
-            range: match self.target {
-                Target::Plane(normal) => extent_along(scene, normal),
-                Target::Region(..) => (0.0, 1.0),
+            target: match &self.target {
+                Target::Plane(normal) => Target::Plane(*normal),
+                Target::Region(from, to) => Target::Region(change(from)?, change(to)?),
             },
+            range: self.range,
             ease: self.ease,
             frames: self.frames,
         })
-    }
-}
-
-impl Moving {
-    /// The clip of a frame.
-    pub(super) fn at(&self, index: u32) -> rara::Result<Expression> {
-        match (self.plane(index)?, &self.target) {
-            (Some(plane), _) => Ok(Expression::Shape(plane.into())),
-            (None, Target::Region(from, to)) => from.between(to, self.position(index)),
-            (None, Target::Plane(_)) => unreachable!("a plane is one"),
-        }
-    }
-
-    /// The plane of a frame, if it is one that moves across the scene.
-    pub(super) fn plane(&self, index: u32) -> rara::Result<Option<Plane>> {
-        match self.target {
-            Target::Plane(normal) => Plane::new(normal, -self.position(index)).map(Some),
-            Target::Region(..) => Ok(None),
-        }
     }
 
     /// The position in a frame: both ends included, the middle when there is one frame only.
@@ -129,12 +101,42 @@ impl Moving {
     }
 }
 
-impl<R> Target<R> {
-    fn map<T>(&self, change: impl Fn(&R) -> rara::Result<T>) -> rara::Result<Target<T>> {
-        Ok(match self {
-            Self::Plane(normal) => Target::Plane(*normal),
-            Self::Region(from, to) => Target::Region(change(from)?, change(to)?),
-        })
+impl Moving<Region> {
+    /// The same in a scene.
+    pub(super) fn in_scene(&self, scene: &Scene<'_>) -> rara::Result<Moving<Expression>> {
+        let bounds = LazyCell::new(|| Bounds::of(scene));
+        let mut moving = self.map(|region| region.resolve(|| *bounds))?;
+        if let Target::Plane(normal) = self.target {
+            moving.range = extent_along(scene, normal);
+        }
+        Ok(moving)
+    }
+}
+
+impl Moving<Expression> {
+    /// The clip of a frame, which it makes together with shapes that stand still.
+    pub(super) fn clip(
+        &self,
+        index: u32,
+        (still, op): (&[Expression], ClipOp),
+    ) -> rara::Result<Clip> {
+        Ok(joined(&[still, &[self.at(index)?]].concat(), op))
+    }
+
+    fn at(&self, index: u32) -> rara::Result<Expression> {
+        let position = self.position(index);
+        match &self.target {
+            Target::Plane(normal) => Ok(Expression::Shape(Plane::new(*normal, -position)?.into())),
+            Target::Region(from, to) => from.between(to, position),
+        }
+    }
+
+    /// The plane of a frame, if it is one that moves across the scene.
+    pub(super) fn plane(&self, index: u32) -> rara::Result<Option<Plane>> {
+        match self.target {
+            Target::Plane(normal) => Plane::new(normal, -self.position(index)).map(Some),
+            Target::Region(..) => Ok(None),
+        }
     }
 }
 
@@ -145,7 +147,7 @@ mod tests {
     #[test]
     fn steps_are_equal_and_reach_both_ends() {
         let positions = |frames, ease| {
-            let moving = Moving {
+            let moving = Moving::<Region> {
                 target: Target::Plane(DVec3::Z),
                 range: (-1.0, 3.0),
                 ease,

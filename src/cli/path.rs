@@ -34,6 +34,9 @@ pub(super) struct PathArgs {
     ease: Ease,
 }
 
+/// The most pictures of an orbit or a spline.
+const MOST: u32 = 100_000;
+
 #[derive(Debug, Clone, PartialEq)]
 enum Route {
     /// So many turns.
@@ -115,6 +118,11 @@ impl PathArgs {
         scenes: &[PathBuf],
         frames: u32,
     ) -> Result<Views, Failure> {
+        if matches!(self.path, Some(Route::Orbit(_) | Route::Spline { .. })) && frames > MOST {
+            return Err(Failure::Usage(format!(
+                "--frames {frames}: an orbit or a spline has {MOST} pictures at most"
+            )));
+        }
         match &self.path {
             None => camera.meant(scenes),
             Some(Route::Orbit(turns)) => {

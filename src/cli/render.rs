@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use glam::DVec3;
+use rara::scene::layers::Region;
 use rara::{Aov, Camera, Clip, Picture, Scene, Settings, Show};
 use rara_shots::{Panorama, levelled};
 
@@ -14,7 +15,7 @@ use super::frame::FrameArgs;
 use super::kept::SessionCache;
 use super::labels::LabelArgs;
 use super::memory;
-use super::moving::{Movement, MovingArgs};
+use super::moving::{Moving, MovingArgs};
 use super::near;
 use super::output::{self, counted};
 use super::panorama::PanoramaArgs;
@@ -106,7 +107,7 @@ const FRAMES: u32 = 120;
 
 enum Pictures {
     /// Pictures of cameras, under one clip, and perhaps one that moves.
-    Views(Views, Regions, Option<Box<Movement>>),
+    Views(Views, Regions, Option<Box<Moving<Region>>>),
     Sections(Sections),
 }
 
@@ -143,25 +144,23 @@ impl Pictures {
     /// The pictures, once the scene is known.
     fn shots(self, scene: &Scene<'_>) -> Result<Vec<Shot>, Failure> {
         Ok(match self {
-            Self::Views(views, regions, movement) => {
-                let (mut shapes, op) = (regions.expressions(scene)?, regions.op());
-                let moving = movement.map(|movement| movement.in_scene(scene));
-                let moving = moving.transpose()?;
+            Self::Views(views, regions, moving) => {
+                let (still, op) = (regions.expressions(scene)?, regions.op());
+                let moving = moving.map(|moving| moving.in_scene(scene)).transpose()?;
+                let clip = joined(&still, op);
                 let views = views.in_scene(scene)?.into_iter().zip(0..);
-                let mut shot = |(view, index)| -> Result<Shot, Failure> {
-                    let moved = moving.as_ref().map(|moving| moving.at(index));
-                    let still = shapes.len();
-                    shapes.extend(moved.transpose()?);
-                    let clip = joined(&shapes, op);
-                    shapes.truncate(still);
+                let shot = |(view, index)| -> Result<Shot, Failure> {
                     Ok(Shot {
                         view,
-                        clip,
+                        clip: match &moving {
+                            Some(moving) => moving.clip(index, (&still, op))?,
+                            None => clip.clone(),
+                        },
                         section: None,
                         moment: None,
                     })
                 };
-                views.map(&mut shot).collect::<Result<_, _>>()?
+                views.map(shot).collect::<Result<_, _>>()?
             }
             Self::Sections(sections) => {
                 let sections = sections.sections(scene)?.into_iter();
@@ -251,7 +250,7 @@ impl Render {
         self.slice.check(&settings)?;
         let sections = self.section.meant(&self.frame.camera, &self.frame.clip)?;
         let panorama = self.panorama.meant(self.frame.camera.size())?;
-        if panorama.is_some() && (self.slice.changes_pictures() || self.labels.are_drawn()) {
+        if panorama.is_some() && self.changes_pictures() {
             return Err(Failure::Usage(
                 "--outline, --rim, --scale-bar and --letters mark what one picture shows, and --panorama is made of six: leave out one of them".into(),
             ));
@@ -277,8 +276,8 @@ impl Render {
                 let places = self.scenes.places();
                 let views = self.path.views(&self.frame.camera, &places, frames)?;
                 let pace = (views.numbers().count() as u32, self.path.ease());
-                let movement = self.moving.meant(None, pace)?;
-                if movement.is_some() && !self.path.moves() {
+                let moving = self.moving.meant(None, pace)?;
+                if moving.is_some() && !self.path.moves() {
                     return Err(Failure::Usage(
                         "--from and --to move a clip while --path moves the camera: give a path, or let the clip move alone by \
                          rara sweep"
@@ -290,7 +289,7 @@ impl Render {
                         "--panorama is what is seen from one place: say which by --eye, --camera or --cameras".into(),
                     ));
                 }
-                Pictures::Views(views, clip, movement.map(Box::new))
+                Pictures::Views(views, clip, moving.map(Box::new))
             }
         };
         let numbers = pictures.numbers();
@@ -360,6 +359,11 @@ impl Render {
             &settings,
         );
         profile.end_after(done)
+    }
+
+    /// True when pictures are changed once they are drawn.
+    fn changes_pictures(&self) -> bool {
+        self.slice.changes_pictures() || self.labels.are_drawn()
     }
 
     /// What makes so many pictures, if they are several: a run of several frames, however many there are.
@@ -469,8 +473,7 @@ impl Render {
             record.is_faint = is_faint;
             let mut drawn = RenderedPicture::from(record);
             if file.is_some() {
-                let is_changed = self.slice.changes_pictures() || self.labels.are_drawn();
-                drawn.picture = Some(match is_changed {
+                drawn.picture = Some(match self.changes_pictures() {
                     false => Pixels::Stored(session.headless.read_back()?),
                     true => {
                         let mut picture = session.headless.picture()?;

@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 use glam::DVec3;
-use rara::{Clip, Settings, Show};
+use rara::scene::layers::Region;
+use rara::{Settings, Show};
 
 use super::clip::{Regions, joined};
 use super::combine::FrameSummary;
@@ -13,7 +14,7 @@ use super::frame::FrameArgs;
 use super::kept::SessionCache;
 use super::layer_names;
 use super::memory;
-use super::moving::{Movement, MovingArgs};
+use super::moving::{Moving, MovingArgs};
 use super::near;
 use super::path::PathArgs;
 use super::pictures::{
@@ -80,14 +81,14 @@ const SEVERAL: &str = "a sweep makes";
 /// Pictures where nothing else is said.
 const FRAMES: u32 = 30;
 
-/// What the flags mean, before the scene is known.
+/// A sweep as its flags describe it, before the scene is known.
 struct SweepPlan {
     settings: Settings,
     /// The shapes that stand still.
     regions: Regions,
     /// One camera, or one for each picture.
     views: Views,
-    movement: Movement,
+    moving: Moving<Region>,
     frames: u32,
 }
 
@@ -133,12 +134,12 @@ impl Sweep {
             }
         };
         let pace = (frames, self.path.ease());
-        let movement = self.moving.meant(self.clip_normal, pace)?;
+        let moving = self.moving.meant(self.clip_normal, pace)?;
         Ok(SweepPlan {
             settings,
             regions,
             views,
-            movement: movement.expect("one of them is required"),
+            moving: moving.expect("one of them is required"),
             frames,
         })
     }
@@ -171,7 +172,7 @@ impl Sweep {
             settings,
             regions,
             views,
-            movement,
+            moving,
             frames,
         } = plan;
         let (device, sh) = (&self.frame.device, settings.precision.sh);
@@ -180,11 +181,11 @@ impl Sweep {
         regions.settle(&mut loaded)?;
         layer_names::tell_own_clips(&loaded);
         let scene = loaded.scene();
-        let moving = movement.in_scene(&scene)?;
+        let moving = moving.in_scene(&scene)?;
         let views = views.in_scene(&scene)?;
         self.save_camera.save(views.iter())?;
         let view_of = |index: u32| &views[(index as usize).min(views.len() - 1)];
-        let (mut shapes, op) = (regions.expressions(&scene)?, regions.op());
+        let (shapes, op) = (regions.expressions(&scene)?, regions.op());
         let called = |index: &u32| (*index as usize, view_of(*index).name.clone());
         let Some(planned) = destination.left((0..frames).collect(), called)? else {
             return Ok(());
@@ -209,16 +210,11 @@ impl Sweep {
         if let Some(order) = destination.order() {
             order.opened(session.headless.driver());
         }
-        let mut clip_of = |index| -> rara::Result<Clip> {
-            shapes.push(moving.at(index)?);
-            let clip = joined(&shapes, op);
-            shapes.pop();
-            Ok(clip)
-        };
+        let clip_of = |index| moving.clip(index, (&shapes, op));
         // The first frames, those that cut much and take over, and the last: together they need every shader.
         let (middle, last) = (frames / 2, frames - 1);
         let first = [0, middle, middle + 1, middle + 2, last].map(|index| index.min(last));
-        let clips = first.map(&mut clip_of).into_iter();
+        let clips = first.map(clip_of).into_iter();
         let clips = clips.collect::<rara::Result<Vec<_>>>()?;
         if destination.order().is_none() {
             let frames = first.into_iter().zip(&clips);

@@ -38,7 +38,7 @@ pub(super) struct LabelArgs {
 }
 
 const INK: [u8; 3] = [255; 3];
-/// What lies around letters and bar, so that they can be read on all colours.
+/// The colour around letters and bar, so that they can be read on all colours.
 const EDGE: [u8; 3] = [0; 3];
 /// The share of the picture's width that a bar may have.
 const BAR: f64 = 0.3;
@@ -125,7 +125,7 @@ fn draw_letters(picture: &mut Picture, camera: &Camera, letters: Letters, scale:
     }
 }
 
-/// What lies in a direction.
+/// The letters of a direction.
 fn letter(direction: DVec3, letters: Letters) -> &'static str {
     let axis = direction.abs().max_position();
     let is_positive = direction[axis] > 0.0;

@@ -108,19 +108,21 @@ impl SliceArgs {
         !self.outline.is_empty() || self.rim.is_some()
     }
 
-    /// The marks around the cut surface of each layer that has some of its own, or of all together.
+    /// The marks around the cut surface of each layer that has some of its own, or of all together; the rim comes first.
     fn cues(&self) -> impl Iterator<Item = (Option<&str>, Cues)> {
         let cue = |width| move |colour| Cue { colour, width };
-        let mut of_all = Cues::default();
-        of_all.level = self.cut_level;
-        of_all.rim = self.rim.map(cue(self.rim_width));
-        let lines = self.outline.iter().map(move |line| {
-            let mut cues = of_all;
-            cues.rim = None;
+        let mut bare = Cues::default();
+        bare.level = self.cut_level;
+        let mut rimmed = bare;
+        rimmed.rim = self.rim.map(cue(self.rim_width));
+        // One slice serves the rim and a line around all layers.
+        let is_joined = (self.outline.first()).is_some_and(|line| line.layer.is_none());
+        let rim = rimmed.rim.filter(|_| !is_joined).map(|_| (None, rimmed));
+        let lines = self.outline.iter().enumerate().map(move |(at, line)| {
+            let mut cues = if is_joined && at == 0 { rimmed } else { bare };
             cues.outline = Some(cue(self.outline_width)(line.colour));
             (line.layer.as_deref(), cues)
         });
-        let rim = of_all.rim.map(|_| (None, of_all));
         rim.into_iter().chain(lines)
     }
 }
@@ -184,10 +186,12 @@ impl<'a> Slicer<'a> {
     /// Checks that there are the layers that flags name.
     pub(super) fn check(&self) -> Result<(), Failure> {
         let names = || self.scene.layers().iter().map(Layer::name);
-        let unknown = |(layer, _): (Option<&'a str>, Cues)| {
-            layer.filter(|layer| !names().any(|name| name == *layer))
-        };
-        match self.args.cues().find_map(unknown) {
+        let mut named = self
+            .args
+            .outline
+            .iter()
+            .filter_map(|line| line.layer.as_deref());
+        match named.find(|layer| !names().any(|name| name == *layer)) {
             Some(layer) => Err(layer_names::no_layer("--outline", layer, names())),
             None => Ok(()),
         }
@@ -227,6 +231,9 @@ impl<'a> Slicer<'a> {
         picture: &mut Picture,
         (view, cuts, settings): (&NamedView, &[Cut], &Settings),
     ) -> Result<(), Failure> {
+        if !self.args.has_cues() {
+            return Ok(());
+        }
         let sh = settings.precision.sh;
         // The picture may be drawn in any way; its slice is made by tiles alone.
         let shown = settings
@@ -235,20 +242,21 @@ impl<'a> Slicer<'a> {
             .background(None);
         for cut in cuts {
             let slice = Slice::new(&self.scene, &cut.plane);
+            let scene = slice.scene();
+            let mut session = match self.session.take() {
+                Some(mut session) => {
+                    session.headless.load_as(&scene, sh)?;
+                    session
+                }
+                None => Session::open(&self.device, &scene, sh)?,
+            };
             for (layer, cues) in self.args.cues() {
                 let is_meant = |of: &Layer<'_>| layer.is_none_or(|name| of.name() == name);
-                let scene = of_layers(&slice.scene(), is_meant);
-                let mut session = match self.session.take() {
-                    Some(mut session) => {
-                        session.headless.load_as(&scene, sh)?;
-                        session
-                    }
-                    None => Session::open(&self.device, &scene, sh)?,
-                };
+                session.set_layer_states(&of_layers(&scene, is_meant))?;
                 let slice = session.picture(&view.camera, &cut.rest, &shown)?;
-                self.session = Some(session);
                 picture.draw_cues(&slice, &cues)?;
             }
+            self.session = Some(session);
         }
         Ok(())
     }

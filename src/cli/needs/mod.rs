@@ -25,6 +25,9 @@ enum Need {
 
 use Need::{Flag, Other, Two, Value, Without};
 
+/// Something that cuts.
+const CUT: Need = Flag(&["section", "clip", "clip_expr", "clip_file", "from"]);
+
 /// The needs of the flags that have any, by the flags' names in the definitions; where a command has none of the flags
 /// that are needed, it needs nothing. Where a value is needed a note says so, since scripts give such flags to one value
 /// after another.
@@ -54,15 +57,9 @@ const NEEDS: &[(&str, Need)] = &[
     ("section_scale", Flag(&["section"])),
     ("slice", Flag(&["section"])),
     ("opaque", Flag(&["slice"])),
-    (
-        "outline",
-        Flag(&["section", "clip", "clip_expr", "clip_file", "from"]),
-    ),
+    ("outline", CUT),
     ("outline_width", Flag(&["outline"])),
-    (
-        "rim",
-        Flag(&["section", "clip", "clip_expr", "clip_file", "from"]),
-    ),
+    ("rim", CUT),
     ("rim_width", Flag(&["rim"])),
     ("cut_level", Flag(&["outline", "rim", "opaque"])),
     // The clip. A file may hold several shapes, and sections refuse `or` themselves.

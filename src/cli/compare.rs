@@ -130,10 +130,9 @@ impl Apart {
 /// A picture over a background, for those who look at it: a viewer that does not know of transparency would show what is
 /// hardly there as solid.
 pub(super) fn over(picture: &Picture, background: [f32; 3]) -> Picture {
-    opaque(picture, |[r, g, b, a]| {
-        let [behind_r, behind_g, behind_b] = background.map(|c| (1.0 - a) * c);
-        [r + behind_r, g + behind_g, b + behind_b]
-    })
+    let mut picture = picture.clone();
+    picture.put_before(background);
+    picture
 }
 
 /// An opaque picture of these colours of another one's pixels.

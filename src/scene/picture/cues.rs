@@ -96,12 +96,12 @@ impl Picture {
 
     /// Puts the picture in front of a colour, red, green and blue from 0 to 1.
     pub fn put_before(&mut self, background: [f32; 3]) {
-        let [r, g, b] = background;
         for pixel in &mut self.pixels {
             let rest = 1.0 - pixel[3];
-            for (value, behind) in pixel.iter_mut().zip([r, g, b, 1.0]) {
+            for (value, behind) in pixel.iter_mut().zip(background) {
                 *value += rest * behind;
             }
+            pixel[3] = 1.0;
         }
     }
 }

@@ -178,14 +178,16 @@ impl Clips {
 
     /// Gives the layers of a name a clip of their own; says whether there are any.
     pub(super) fn replace_of(&mut self, name: &str, clip: &LayerClip) -> bool {
+        if !self.layers.iter().any(|layer| layer.name == name) {
+            return false;
+        }
         self.remember(None);
+        self.changed = true;
         let centre = self.centre;
-        let mut is_there = false;
         for layer in self.layers.iter_mut().filter(|layer| layer.name == name) {
             layer.own = Some(own(clip, centre));
-            (is_there, self.changed) = (true, true);
         }
-        is_there
+        true
     }
 
     /// Does what is asked of the held shape. What changes the clip of a layer without one gives it one, whose only shape is a

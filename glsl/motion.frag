@@ -23,7 +23,7 @@ BUFFER(readonly, 7, Gaussian, earlier) // as edit.comp has it
 
 layout(location = 0) out vec4 moved; // px to the right and down, the layer's number, 1 if it was kept in the frame before
 
-// What a pixel shows at a depth, relative to a Gaussian's centre, in the layer's axes and units.
+// The place of a pixel's content at a depth, relative to a Gaussian's centre, in the layer's axes and units.
 vec3 from_centre_of(vec3 centre, vec2 pixel, float z) {
     vec3 away = vec3((pixel - VIEW.focal.zw) / VIEW.focal.xy * homogeneous(z), z) - view_position(centre, eye_relative(centre));
     return mat3(LAYER_VIEW.rotation_x.xyz, LAYER_VIEW.rotation_y.xyz, LAYER_VIEW.rotation_z.xyz) * away
@@ -47,6 +47,12 @@ vec3 way_of_edit(Gaussian gaussian, Gaussian was, vec3 from_centre) {
     return way;
 }
 
+// The same of any Gaussian; 0 where no edit has moved it.
+vec3 way_in_layer(uint place, uint since, Gaussian gaussian, vec3 from_centre) {
+    bool is_moved = since != NO_EDITS && floatBitsToUint(earlier.at[place].position_opacity.w) > since;
+    return is_moved ? way_of_edit(gaussian, earlier.at[place], from_centre) : vec3(0.0);
+}
+
 // True where a region keeps a point. So much is added to the numbers of its surfaces.
 bool keeps(LayerRegion region, uint first_surface, vec3 point) {
     bool all = true;
@@ -62,12 +68,6 @@ bool keeps(LayerRegion region, uint first_surface, vec3 point) {
         }
     }
     return region.op == OP_PARTS ? (stack & 1u) != 0u : region.op == OP_OR ? any : all;
-}
-
-// The same of a Gaussian that perhaps none has moved.
-vec3 way_in_layer(uint place, uint since, Gaussian gaussian, vec3 from_centre) {
-    bool is_moved = since != NO_EDITS && floatBitsToUint(earlier.at[place].position_opacity.w) > since;
-    return is_moved ? way_of_edit(gaussian, earlier.at[place], from_centre) : vec3(0.0);
 }
 
 // True where the clip keeps what it cut away in the frame before. A hard clip asks for the Gaussian's centre.

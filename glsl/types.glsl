@@ -121,7 +121,7 @@ struct LayerMotion {
     vec4 right; // of x
     vec4 down; // of y
     vec4 depth; // of z; of an orthographic camera zero
-    // What a way in the layer's axes and units adds to the same; w unused.
+    // A way in the layer's axes and units adds to the same by these rows; w unused.
     vec4 way_right; // to x
     vec4 way_down; // to y
     vec4 way_depth; // to z; of an orthographic camera zero

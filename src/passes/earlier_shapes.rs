@@ -17,7 +17,7 @@ pub(crate) struct EarlierShapes {
 }
 
 impl EarlierShapes {
-    /// Makes room for as many bytes as a scene's Gaussians take. Nothing is in it yet.
+    /// Makes room for as many bytes as a scene's Gaussians take, for the first edit. Nothing is in it yet.
     pub(super) fn new(device: &Device, size: u64) -> Result<Self> {
         device.check_budget("what edited Gaussians were", size, 0)?;
         let desc = BufferDesc {
@@ -27,7 +27,7 @@ impl EarlierShapes {
         };
         Ok(Self {
             buffer: device.create_buffer(&desc)?,
-            edit: 0,
+            edit: 1,
             shown: Arc::default(),
         })
     }

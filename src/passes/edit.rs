@@ -124,8 +124,8 @@ pub(crate) struct CheckedEdit {
     index: usize,
     layer: SceneLayer,
     params: edit::Params,
-    /// What the scene keeps of Gaussians that edits have moved, with this edit.
-    earlier: Option<EarlierShapes>,
+    /// The scene's earlier shapes after this edit, if it moves Gaussians.
+    moved: Option<EarlierShapes>,
     /// Blocks of the layer that hold Gaussians.
     blocks: u32,
 }
@@ -170,7 +170,7 @@ impl CheckedEdit {
                 None => layer.clone(),
             },
             params,
-            earlier: moved.or_else(|| scene.earlier.clone()),
+            moved,
             blocks: layer.filled_blocks(),
         })
     }
@@ -183,11 +183,14 @@ impl CheckedEdit {
         plain: &Buffer,
         scene: &mut SceneBuffers,
     ) {
-        let earlier = self.earlier.as_ref();
-        if let Some(new) = earlier.filter(|_| scene.earlier.is_none()) {
-            let all = new.buffer().size();
-            recorder.label("edit", |r| r.fill(new.buffer(), 0, all, 0));
+        if let Some(moved) = self.moved {
+            if scene.earlier.is_none() {
+                let buffer = moved.buffer();
+                recorder.label("edit", |r| r.fill(buffer, 0, buffer.size(), 0));
+            }
+            scene.earlier = Some(moved);
         }
+        let earlier = scene.earlier.as_ref();
         let buffers = edit::Buffers {
             plain,
             gaussians: &scene.gaussians,
@@ -205,7 +208,6 @@ impl CheckedEdit {
                 (groups, None),
             );
         });
-        scene.earlier = self.earlier;
         scene.hold(self.index, self.layer);
     }
 }

@@ -23,7 +23,7 @@ use crate::passes::{
     bin, blocks, classify, clip, compact, composite, cutoff, depth, motion, occluders, project,
     reclip, shared, sort, splat, tiles,
 };
-use crate::types::{FrameData, LayerData, LayerMotion};
+use crate::types::{FrameData, LayerData};
 use rara_gpu::{Buffer, Recorder};
 
 /// The stages of a cut. They come before those of the eyes that see it.
@@ -139,23 +139,20 @@ fn write_frame(plan: &EyePlan, recorder: &mut Recorder<'_>, frame: &Buffer) {
 fn write_motions(
     recorder: &mut Recorder<'_>,
     b: &Buffers<EyePlan>,
-    [now, before]: [&Sight; 2],
-    was_shown: bool,
+    now: &Sight,
+    before: Option<&Sight>,
 ) {
     let memory = &tiles::MEMORY;
     let mut constants = SmallVec::<[u8; FEW_LAYERS]>::new();
     let mut has_moved = false;
     for motion in now.motions(before) {
         has_moved |= motion.clip_has_moved != 0;
-        constants.extend_from_slice(bytes_of(&LayerMotion {
-            was_shown: motion.was_shown * u32::from(was_shown),
-            ..motion
-        }));
+        constants.extend_from_slice(bytes_of(&motion));
     }
     recorder.update(b.get(&memory.motions), 0, &constants);
     if has_moved {
         constants.clear();
-        for sight in [before, now] {
+        for sight in before.into_iter().chain([now]) {
             constants.extend_from_slice(cast_slice(sight.surfaces()));
         }
         recorder.update(b.get(&memory.motion_surfaces), 0, &constants);
@@ -192,8 +189,7 @@ pub(crate) fn record(
         && let [Some(now), before] = resources.sights
     {
         let before = now.after(before);
-        let sights = [now, before.unwrap_or(now)];
-        recorder.label("motion", |r| write_motions(r, b, sights, before.is_some()));
+        recorder.label("motion", |r| write_motions(r, b, now, before));
     }
     if owns_cut {
         record_stages(

@@ -90,11 +90,13 @@ impl Sight {
         })
     }
 
-    /// How the layers have moved since an earlier frame.
+    /// How the layers have moved since an earlier frame. Without one nothing has, and nothing was shown.
     pub(crate) fn motions<'a>(
         &'a self,
-        before: &'a Self,
+        before: Option<&'a Self>,
     ) -> impl Iterator<Item = LayerMotion> + 'a {
+        let is_known = before.is_some();
+        let before = before.unwrap_or(self);
         let since = self.shown_by(before);
         let kept_before = before.kept.surfaces().len();
         let tells = kept_before + self.kept.surfaces().len() <= tiles::MOTION_SURFACES;
@@ -107,7 +109,7 @@ impl Sight {
                 region: layer.region,
                 clip_has_moved: (!stays).into(),
                 first_surface: kept_before as u32,
-                was_shown: layer.content.visible,
+                was_shown: u32::from(is_known) * layer.content.visible,
                 since: since.max(now.replaced_after),
                 ..way_of(&now.camera, now.unit, &was.camera)
             }

@@ -224,9 +224,7 @@ impl SceneBuffers {
     pub(super) fn moved_again(&self) -> Result<EarlierShapes> {
         match &self.earlier {
             Some(earlier) => Ok(earlier.edited()),
-            None => {
-                Ok(EarlierShapes::new(self.gaussians.device(), self.gaussians.size())?.edited())
-            }
+            None => EarlierShapes::new(self.gaussians.device(), self.gaussians.size()),
         }
     }
 

@@ -238,7 +238,7 @@ fn each_eye_draws_into_its_view_of_one_scope() {
         let mut renderer = renderer.expect("a renderer");
         let refused = renderer.configure(&scene, &cameras[0], &clip, &raster(Raster::Quad));
         let refused = refused.expect_err("of quads").to_string();
-        assert!(refused.contains("Target::in_view"), "{refused}");
+        assert!(refused.contains("view of a view mask"), "{refused}");
         let hidden = DepthDesc::new(vk::Format::D32_SFLOAT, map);
         for (view, depth, part) in [(2, None, "view mask lacks"), (1, Some(hidden), "readable")] {
             let desc = desc()

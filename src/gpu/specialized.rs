@@ -30,6 +30,8 @@ mod op {
     pub(super) const FUNCTION_END: u16 = 56;
     pub(super) const FUNCTION_CALL: u16 = 57;
     pub(super) const VARIABLE: u16 = 59;
+    pub(super) const LOAD: u16 = 61;
+    pub(super) const STORE: u16 = 62;
     pub(super) const DECORATE: u16 = 71;
     pub(super) const MEMBER_DECORATE: u16 = 72;
     pub(super) const UNDEF: u16 = 1;
@@ -377,7 +379,17 @@ impl Module {
 
     /// A function without the blocks that its constants switch off.
     fn folded(&mut self, function: &[Instruction<'_>]) -> Vec<u32> {
-        let flow = self.flow(function);
+        let mut flow = self.flow(function, &HashSet::new());
+        // Where a block is gone, a variable may be left that is stored once: it has that value wherever it is read.
+        let mut stored_once = HashSet::new();
+        loop {
+            let once = flow.stored_once(function);
+            if once == stored_once {
+                break;
+            }
+            stored_once = once;
+            flow = self.flow(function, &stored_once);
+        }
         let mut out = Vec::new();
         let before_blocks = flow
             .blocks
@@ -440,8 +452,9 @@ impl Module {
         }
     }
 
-    /// Which blocks of a function are reached, and how.
-    fn flow(&mut self, function: &[Instruction<'_>]) -> Flow {
+    /// Which blocks of a function are reached, and how. Of variables that are stored once the values are known if what is stored
+    /// is.
+    fn flow(&mut self, function: &[Instruction<'_>], stored_once: &HashSet<u32>) -> Flow {
         let mut flow = Flow::new(function);
         if let Some(first) = flow.blocks.first_mut() {
             first.fate = Fate::Reached;
@@ -480,6 +493,16 @@ impl Module {
                             && (taken.is_none() || one.op == op::SWITCH)
                         {
                             flow.name(merge.words[1], Fate::Named);
+                        }
+                    }
+                    op::STORE if stored_once.contains(&words[1]) => {
+                        if let Some(value) = self.values.get(&words[2]) {
+                            self.values.insert(words[1], *value);
+                        }
+                    }
+                    op::LOAD if stored_once.contains(&words[3]) => {
+                        if let Some(value) = self.values.get(&words[3]) {
+                            self.values.insert(words[2], *value);
                         }
                     }
                     operation if words.len() > 3 && self.scalars.contains(&words[1]) => {
@@ -579,6 +602,34 @@ impl Flow {
             places: labels.zip(0..).collect(),
             edges: HashSet::new(),
         }
+    }
+
+    /// The variables of a function that are stored once in the blocks that are reached, and otherwise loaded alone.
+    fn stored_once(&self, function: &[Instruction<'_>]) -> HashSet<u32> {
+        let reached = self.blocks.iter().filter(|one| one.fate == Fate::Reached);
+        let reached = reached.flat_map(|block| &function[block.code.clone()]);
+        let mut stores: HashMap<u32, u32> = HashMap::new();
+        for one in reached.clone().filter(|one| one.op == op::VARIABLE) {
+            // One with a value from the start has been stored.
+            stores.insert(one.words[2], u32::from(one.words.len() > 4));
+        }
+        for one in reached {
+            let (pointer, others) = match (one.op, one.words) {
+                (op::VARIABLE, _) => continue,
+                (op::LOAD, [_, _, _, from, more @ ..]) => (*from, more),
+                (op::STORE, [_, to, more @ ..]) => {
+                    stores.entry(*to).and_modify(|count| *count += 1);
+                    (*to, more)
+                }
+                (_, words) => (0, &words[1..]),
+            };
+            // Whoever else has its address may store it.
+            for other in others.iter().filter(|other| **other != pointer) {
+                stores.remove(other);
+            }
+        }
+        let once = stores.into_iter().filter(|(_, count)| *count == 1);
+        once.map(|(variable, _)| variable).collect()
     }
 
     fn reach(&mut self, from: usize, label: u32) {

@@ -175,3 +175,67 @@ fn operations_on_constants_are_folded() {
         assert_eq!(module.evaluated(operation, operands), result, "{operation}");
     }
 }
+
+/// `bool both = WHICH && called(); if (both) dropped();`, where `both` is a variable, and the same of one that is stored twice.
+#[test]
+fn a_variable_that_is_stored_once_has_that_value() {
+    const POINTER: u32 = 31;
+    const BOTH: u32 = 32;
+    const LOADED: u32 = 33;
+    let condition = |more: &[Vec<u32>]| {
+        let whole = module();
+        let all = instructions(&whole);
+        let begin = all.iter().position(|one| one.op == op::FUNCTION);
+        let end = all.iter().position(|one| one.op == op::FUNCTION_END);
+        let (begin, end) = (begin.expect("a function"), end.expect("its end") + 1);
+        let words =
+            |some: &[Instruction<'_>]| some.iter().flat_map(|one| one.words).copied().collect();
+        let main = [
+            instruction(op::FUNCTION, &[VOID, MAIN, 0, OF_FUNCTIONS]),
+            instruction(op::LABEL, &[ENTRY]),
+            instruction(op::VARIABLE, &[POINTER, BOTH, 7]),
+            instruction(op::SELECTION_MERGE, &[MERGE, 0]),
+            instruction(op::BRANCH_CONDITIONAL, &[WHICH, THEN, MERGE]),
+            instruction(op::LABEL, &[THEN]),
+            instruction(op::FUNCTION_CALL, &[BOOL, LATER, CALLED]),
+            instruction(op::BRANCH, &[MERGE]),
+            instruction(op::LABEL, &[MERGE]),
+            instruction(op::PHI, &[BOOL, JOINED, WHICH, ENTRY, LATER, THEN]),
+            instruction(op::STORE, &[BOTH, JOINED]),
+            more.concat(),
+            instruction(op::LOAD, &[BOOL, LOADED, BOTH]),
+            instruction(op::SELECTION_MERGE, &[AFTER, 0]),
+            instruction(op::BRANCH_CONDITIONAL, &[LOADED, BODY, AFTER]),
+            instruction(op::LABEL, &[BODY]),
+            instruction(op::FUNCTION_CALL, &[VOID, LAST, DROPPED]),
+            instruction(op::BRANCH, &[AFTER]),
+            instruction(op::LABEL, &[AFTER]),
+            instruction(253, &[]),
+            instruction(op::FUNCTION_END, &[]),
+        ];
+        let pointer = instruction(32, &[POINTER, 7, BOOL]);
+        let mut module = [
+            words(&all[..begin]),
+            pointer,
+            main.concat(),
+            words(&all[end..]),
+        ]
+        .concat();
+        let mut header = whole[..HEADER].to_vec();
+        header[BOUND] = 34;
+        header.append(&mut module);
+        header
+    };
+    let drops = |module: &[u32], which: u32| {
+        let made = specialized(module, &[(7, which)]);
+        let dropped = instruction(op::FUNCTION, &[VOID, DROPPED, 0, OF_FUNCTIONS]);
+        !instructions(&made).iter().any(|one| one.words == dropped)
+    };
+    let once = condition(&[]);
+    assert!(drops(&once, 0) && !drops(&once, 1));
+    let stored = instruction(op::STORE, &[BOTH, LATER]);
+    assert!(!drops(&condition(&[stored]), 0));
+    // Whoever gets the variable's address may store it.
+    let lent = instruction(op::FUNCTION_CALL, &[VOID, LAST, CALLED, BOTH]);
+    assert!(!drops(&condition(&[lent]), 0));
+}

@@ -38,7 +38,7 @@ pub struct ClipArgs {
     clip_file: Vec<String>,
     /// Write the clip to a JSON file for --clip-file
     ///
-    /// The plane of a --section is not written. Positions such as x=40% are written as coordinates. rara view writes the clip
+    /// The plane of a --section is not written. Shares such as x=40% are written as coordinates. rara view writes the clip
     /// that it shows when the window closes.
     #[arg(long, value_name = "FILE", value_parser = values::one_file())]
     save_clip: Option<PathBuf>,
@@ -52,7 +52,9 @@ fn shapes() -> String {
     format!(
         "Keep the inside of a shape (repeatable); '!SHAPE' keeps its outside\n\n{} plane:x=40% is \
          perpendicular to the x axis at 40 % of the scene's robust bounds, and keeps the side of larger x. slab:z=40%..60% is \
-         between two such planes. In a shell, put single quotes around a leading !: '!box:0,0,0,1,1,1'.",
+         between two such planes. Points and lengths can be shares of these bounds, too: \
+         sphere:50%,50%,50%,20% has its centre in the middle, and a radius of 20 % of the longest side. Sizes of a box or an \
+         ellipsoid are shares of the side along x, y or z. In a shell, put single quotes around a leading !: '!box:0,0,0,1,1,1'.",
         usages.join(" ")
     )
 }

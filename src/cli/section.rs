@@ -80,7 +80,7 @@ impl Steps {
         };
         let (to, count) = rest.split_once(':').ok_or_else(|| {
             format!(
-                "'{text}' does not say how many sections: write FROM..TO:COUNT, as in 0.1..0.9:9"
+                "'{text}' does not say how many sections: write FROM..TO:COUNT, as in 10%..90%:9"
             )
         })?;
         match count.trim().parse() {
@@ -252,7 +252,7 @@ impl SectionArgs {
 fn unknown<'a>(name: &str, names: impl Iterator<Item = &'a str>) -> Failure {
     let names: Vec<_> = names.collect();
     let there = match names.is_empty() {
-        true => "there is no --clip-file to take it from; across an axis a section is written as axial=0.5".into(),
+        true => "there is no --clip-file to take it from; across an axis a section is written as axial=50%".into(),
         false => {
             let meant = values::meant(name, names.iter().copied());
             format!("the planes of --clip-file are {}{meant}", names.join(", "))

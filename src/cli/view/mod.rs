@@ -38,7 +38,7 @@ Examples:
   rara view scene.ply --clip plane:0,0,1,-2 --mode hard --size 1600x900
   rara view scene.ply --clip-expr 'all(box:0,0,0,1,1,1, not(sphere:1,0,0,.5))'
   rara view body.ply organ.ply --clip plane:1,0,0,0 --layer-clip organ=whole
-  rara view scene.ply --section axial=0.4
+  rara view scene.ply --section axial=40%
   printf 'shape +0.1\\nscreenshot cut.png\\nquit\\n' | rara view scene.ply --script -
 
 rara help view lists what the keys and the mouse do, and the actions of scripts.")]
@@ -231,7 +231,7 @@ fn single(sections: Sections) -> Result<Sections, Failure> {
     match sections.numbers().count() {
         1 => Ok(sections),
         count => Err(Failure::Usage(format!(
-            "--section: a window shows one section, and these are {count}; give one, as axial=0.4, and move it with Page Up \
+            "--section: a window shows one section, and these are {count}; give one, as axial=40%, and move it with Page Up \
              and Page Down, or draw all of them with rara render"
         ))),
     }

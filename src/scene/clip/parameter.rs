@@ -3,6 +3,7 @@
 use glam::{DQuat, DVec3};
 
 use super::Plane;
+use crate::bounds::Bounds;
 use rara_base::error::Result;
 
 /// Numbers of a [`Solid`](super::Solid) that belong together, by what they mean. Lengths are world units.
@@ -43,6 +44,18 @@ impl Role {
             Self::Point | Self::Sizes => vec![(name, 3)],
             Self::Size => vec![(name, 1)],
             Self::Rotation => vec![(name, 4)],
+        }
+    }
+
+    /// What 0 % and 100 % of its number at an index mean in these bounds: the ends of an axis for a point, and for a length from
+    /// nothing to the extent along that axis, or to the longest extent. `None` for numbers that are no lengths.
+    pub(super) fn share(self, index: usize, bounds: &Bounds) -> Option<[f64; 2]> {
+        let extent = bounds.max - bounds.min;
+        match self {
+            Self::Point => Some([bounds.min[index], bounds.max[index]]),
+            Self::Sizes => Some([0.0, extent[index]]),
+            Self::Size => Some([0.0, extent.max_element()]),
+            Self::Plane | Self::Rotation => None,
         }
     }
 

@@ -4,6 +4,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use super::Shape;
+use super::parameter::Role;
 use super::solid::{KINDS, Kind};
 use crate::axis::Axis;
 use crate::bounds::Bounds;
@@ -31,7 +32,8 @@ impl FromStr for Shape {
 
 impl Shape {
     /// Reads a text. Where bounds are given, a plane or a slab may lie at shares of them, `plane:AXIS=SHARE%` or
-    /// `slab:AXIS=FROM%..TO%`; returns true beside the shape if it does.
+    /// `slab:AXIS=FROM%..TO%`, and points and lengths may be shares, `sphere:50%,50%,50%,20%`; returns true beside the shape if
+    /// there are any.
     pub(crate) fn read(text: &str, bounds: Option<&Bounds>) -> Result<(Self, bool)> {
         let (bare, outside) = match text.trim().strip_prefix('!') {
             Some(bare) => (bare, true),
@@ -58,12 +60,50 @@ impl Shape {
                     numbers.map_err(|what| Error::Invalid(format!("'{bare}': {what}")))?;
                 (numbers, true)
             }
+            (Some(bounds), None) if numbers.contains('%') => {
+                let numbers = with_shares(kind, numbers, bounds);
+                let numbers =
+                    numbers.map_err(|what| Error::Invalid(format!("'{bare}': {what}")))?;
+                (numbers, true)
+            }
             _ => (self::numbers(numbers)?, false),
         };
         let shape = Self::new(kind.solid(&numbers)?)?;
         let shape = if outside { shape.complement() } else { shape };
         Ok((shape, at_shares))
     }
+}
+
+/// A share in percent, as a part of 1.
+fn share(text: &str) -> Option<f64> {
+    let percent = number(text.trim().strip_suffix('%')?).ok()?;
+    Some(percent / 100.0)
+}
+
+fn between([low, high]: [f64; 2], share: f64) -> f64 {
+    low + (high - low) * share
+}
+
+/// The numbers of a solid of which some are shares of the bounds.
+fn with_shares(kind: &Kind, text: &str, bounds: &Bounds) -> Result<Vec<f64>> {
+    let roles = kind.parameters.iter().map(|(.., role)| *role);
+    let places = roles.flat_map(|role| (0..role.count()).map(move |index| Some((role, index))));
+    // There may be too many numbers, which is for the kind to say.
+    let places = places.chain(std::iter::repeat(None));
+    let number = |(text, place): (&str, Option<(Role, usize)>)| {
+        let Some(share) = share(text) else {
+            return number(text);
+        };
+        let ends = place.and_then(|(role, index)| role.share(index, bounds));
+        let ends = ends.ok_or_else(|| {
+            Error::Invalid(format!(
+                "'{}' is not a point or a length, which alone can be shares of the scene",
+                text.trim()
+            ))
+        })?;
+        Ok(between(ends, share))
+    };
+    text.split(',').zip(places).map(number).collect()
 }
 
 /// The numbers of a plane, or of a slab, across an axis at shares of the bounds.
@@ -78,11 +118,10 @@ fn at_shares(
     let along = axis
         .ok_or("expected one of the axes x, y, z, sagittal, coronal and axial")?
         .along;
-    let (low, high) = (bounds.min.dot(along), bounds.max.dot(along));
+    let ends = [bounds.min, bounds.max].map(|end| end.dot(along));
     let position = |text: &str| {
-        let share = text.trim().strip_suffix('%').and_then(|n| number(n).ok());
-        share
-            .map(|share| low + (high - low) * share / 100.0)
+        share(text)
+            .map(|share| between(ends, share))
             .ok_or("expected shares in percent, as in plane:x=40% or slab:x=40%..60%")
     };
     let place = match (name, shares.split_once("..")) {

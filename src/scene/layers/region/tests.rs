@@ -21,6 +21,16 @@ fn planes_and_slabs_lie_at_shares_of_the_bounds() {
             "all(plane:1,0,0,3, plane:y=150%)",
             "all(plane:1,0,0,3, plane:0,1,0,-5)",
         ),
+        ("sphere:50%,50%, 25% ,10%", "sphere:0,3,15,2"),
+        (
+            "!box:0,50%,20,50%,50%,1.5,0.6,0,0.8,0",
+            "!box:0,3,20,1,1,1.5,0.6,0,0.8,0",
+        ),
+        (
+            "not(cone:0%,0%,0%,100%,100%,100%,5%)",
+            "not(cone:-1,2,10,1,4,30,1)",
+        ),
+        ("slab:0,0,1,-20,25%", "slab:0,0,1,-20,5"),
     ] {
         let region: Region = typed.parse().expect(typed);
         assert!(matches!(region, Region::Relative(..)), "{typed}");
@@ -44,6 +54,15 @@ fn what_lies_nowhere_is_refused_before_there_is_a_scene() {
         ("slab:x=60%..40%", "the smaller one"),
         ("slab:x=4%..40", "in percent"),
         ("all(plane:x=40%", "the ) of all( is missing"),
+        ("plane:10%,0,0,1", "'10%' is not a point or a length"),
+        (
+            "box:0,0,0,1,1,1,1,0,0,5%",
+            "'5%' is not a point or a length",
+        ),
+        ("sphere:1%,2%,3..3%,4%", "'3..3%' is not a finite number"),
+        ("sphere:50%,50%,50%,0%", "above zero"),
+        ("sphere:1%,1%,1%", "4 numbers"),
+        ("sphere:1,1,1,1,1%", "'1%' is not a point or a length"),
     ] {
         let error = typed.parse::<Region>().expect_err(typed).to_string();
         assert!(error.contains(says), "{typed}: {error}");

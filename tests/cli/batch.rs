@@ -291,12 +291,12 @@ fn a_worker_that_is_killed_at_any_moment_loses_nothing_and_doubles_nothing() {
 }
 
 #[test]
-fn workers_share_a_batch_and_two_of_one_share_draw_nothing_twice() {
+fn workers_share_a_batch_and_two_of_one_part_draw_nothing_twice() {
     let here = folder("batch_shared");
     let count = many(&here, 60);
     let shares = [
-        &["--shard", "1/3"][..],
-        &["--shard", "2/3"],
+        &["--part", "1/3"][..],
+        &["--part", "2/3"],
         &["--shard", "2/3"],
     ];
     let workers: Vec<Child> = shares.iter().map(|share| begin(&here, share)).collect();
@@ -314,11 +314,10 @@ fn workers_share_a_batch_and_two_of_one_share_draw_nothing_twice() {
     last.arg("batch")
         .arg(here.join("jobs.json"))
         .env("RARA_CACHE", "");
-    last.env("JOB_COMPLETION_INDEX", "2")
-        .env("RARA_SHARDS", "3");
+    last.env("JOB_COMPLETION_INDEX", "2").env("RARA_PARTS", "3");
     let output = done(last.output().expect("the rara binary runs"));
     assert!(
-        stderr(&output).contains("share 3/3: 20 of 60 pictures"),
+        stderr(&output).contains("part 3/3: 20 of 60 pictures"),
         "{}",
         stderr(&output)
     );
@@ -329,5 +328,5 @@ fn workers_share_a_batch_and_two_of_one_share_draw_nothing_twice() {
         Some(("JOB_COMPLETION_INDEX", "2")),
     );
     assert_eq!(refused.status.code(), Some(2));
-    assert!(stderr(&refused).contains("RARA_SHARDS"));
+    assert!(stderr(&refused).contains("RARA_PARTS"));
 }

@@ -1,7 +1,7 @@
 //! `rara batch`: many commands as one, over any number of workers.
 
 mod jobs;
-mod shard;
+mod part;
 mod state;
 
 use std::collections::{BTreeMap, HashMap};
@@ -16,7 +16,7 @@ use serde_json::json;
 use super::failure::Failure;
 use super::kept::SessionCache;
 use super::output::{self, ProgressLine, counted, counted_are, say};
-use super::pictures::{Order, Plan, RunShare};
+use super::pictures::{Order, Plan, RunPart};
 use super::report::FrameRecord;
 use super::times;
 use super::{Command, program};
@@ -29,7 +29,7 @@ use state::{Claim, State, StateRecord, Worker, stamp};
 #[command(after_help = "\
 Examples:
   rara batch jobs.json
-  rara batch jobs.json --shard 3/10
+  rara batch jobs.json --part 3/10
   rara batch jobs.json --status
   rara render scene.ply -o view_{}.png --cameras cameras.json --view all --save-job jobs.json
 
@@ -45,18 +45,18 @@ ${z} stands for the value of z, and ${z:03} for the value with leading zeros. \"
 \"0..4\"} makes one job for each step of its names, which change together.
 
 Workers record finished pictures in the folder of --state and do not draw them again. Workers on several machines may \
-share this folder. In an array job of Slurm or SGE, each task draws its share. Tasks of Kubernetes and PBS do so too if \
-RARA_SHARDS is set to the number of tasks. A worker that is killed leaves no partial pictures: start it again to draw the \
+share this folder. In an array job of Slurm or SGE, each task draws its part. Tasks of Kubernetes and PBS do so too if \
+RARA_PARTS is set to the number of tasks. A worker that is killed leaves no partial pictures: start it again to draw the \
 rest. The exit status is 1 if a picture is missing.")]
 pub(super) struct Batch {
     /// Files of jobs; - is standard input
     #[arg(value_name = "JOBS", required = true)]
     files: Vec<PathBuf>,
-    /// Divide the pictures into N shares, and draw only share K, from 1 to N
+    /// Divide the pictures into N parts, and draw only part K, from 1 to N
     ///
-    /// All shares take about equally long. The same K and N always give the same share.
-    #[arg(long, value_name = "K/N")]
-    shard: Option<RunShare>,
+    /// All parts take about equally long. The same K and N always give the same part.
+    #[arg(long, value_name = "K/N", alias = "shard")]
+    part: Option<RunPart>,
     /// Folder that records finished pictures [default: the first file's name plus .done]
     #[arg(long, value_name = "DIR")]
     state: Option<PathBuf>,
@@ -87,7 +87,7 @@ impl Batch {
     pub(super) fn run(self) -> Result<(), Failure> {
         let folder = self.folder()?;
         let mut planned = self.planned()?;
-        let share = self.share(&planned)?;
+        let ours = self.ours(&planned)?;
         let state = State::read(&folder)?;
         if state.unread > 0 {
             say(format_args!(
@@ -100,13 +100,13 @@ impl Batch {
             ));
         }
         if self.status {
-            return self.say_status(&planned, &share, &state);
+            return self.say_status(&planned, &ours, &state);
         }
         if self.report {
-            return self.say_report(&planned, &share, &state);
+            return self.say_report(&planned, &ours, &state);
         }
-        let (done, stale) = done(&planned, &share, &state);
-        for ((job, index), done) in share.iter().zip(done) {
+        let (done, stale) = done(&planned, &ours, &state);
+        for ((job, index), done) in ours.iter().zip(done) {
             if done == PictureState::Not || (self.redraw && done == PictureState::Otherwise) {
                 let one = &mut planned[*job];
                 let (number, _) = one.plan.pictures[*index];
@@ -128,11 +128,11 @@ impl Batch {
         }
         draw(&planned, &folder, &state, self.json)?;
         let now = State::read(&folder)?;
-        let missing = missing(&planned, &share, &now);
+        let missing = missing(&planned, &ours, &now);
         say(format_args!(
             "{} of {} there",
-            share.len() - missing.len(),
-            counted_are(share.len() as u64, "picture")
+            ours.len() - missing.len(),
+            counted_are(ours.len() as u64, "picture")
         ));
         refuse(&missing)
     }
@@ -190,11 +190,11 @@ impl Batch {
         Ok(planned)
     }
 
-    /// The pictures of this worker's share: the numbers of a job and of its picture.
-    fn share(&self, planned: &[JobPlan]) -> Result<Vec<(usize, usize)>, Failure> {
+    /// The pictures of this worker's part: the numbers of a job and of its picture.
+    fn ours(&self, planned: &[JobPlan]) -> Result<Vec<(usize, usize)>, Failure> {
         let looks = self.status || self.report;
-        let part = match self.shard {
-            None if !looks => shard::of_scheduler(|name| std::env::var(name).ok())?,
+        let part = match self.part {
+            None if !looks => part::of_scheduler(|name| std::env::var(name).ok())?,
             given => given,
         };
         let all = planned
@@ -216,11 +216,11 @@ impl Batch {
                 (scenes, planned[job].plan.work)
             })
             .collect();
-        let is_ours = shard::share(part, &work).into_iter();
+        let is_ours = part::has(part, &work).into_iter();
         let ours = all.into_iter().zip(is_ours).filter(|(_, is_ours)| *is_ours);
         let ours: Vec<_> = ours.map(|(picture, _)| picture).collect();
         say(format_args!(
-            "share {part}: {} of {}",
+            "part {part}: {} of {}",
             ours.len(),
             counted(work.len() as u64, "picture")
         ));
@@ -230,20 +230,20 @@ impl Batch {
     fn say_status(
         &self,
         planned: &[JobPlan],
-        share: &[(usize, usize)],
+        ours: &[(usize, usize)],
         state: &State,
     ) -> Result<(), Failure> {
-        let missing = missing(planned, share, state);
-        let (_, old) = done(planned, share, state);
-        let there = share.len() - missing.len();
+        let missing = missing(planned, ours, state);
+        let (_, old) = done(planned, ours, state);
+        let there = ours.len() - missing.len();
         if self.json {
             output::json(&json!({
-                "pictures": share.len(), "there": there, "of_another": old, "missing": missing,
+                "pictures": ours.len(), "there": there, "of_another": old, "missing": missing,
             }))?;
         } else {
             output::answer(&format!(
                 "pictures    {}\nthere       {there}, {old} of them by another job, version or driver\nmissing     {}",
-                share.len(),
+                ours.len(),
                 missing.len()
             ))?;
         }
@@ -253,11 +253,11 @@ impl Batch {
     fn say_report(
         &self,
         planned: &[JobPlan],
-        share: &[(usize, usize)],
+        ours: &[(usize, usize)],
         state: &State,
     ) -> Result<(), Failure> {
         let name = |(job, index): &(usize, usize)| &planned[*job].plan.pictures[*index].1;
-        let entries: Vec<&StateRecord> = share
+        let entries: Vec<&StateRecord> = ours
             .iter()
             .filter_map(|picture| state.entries.get(name(picture)))
             .collect();
@@ -319,12 +319,8 @@ enum PictureState {
     Likewise,
 }
 
-/// The state of each picture of a share, and how many were drawn otherwise.
-fn done(
-    planned: &[JobPlan],
-    share: &[(usize, usize)],
-    state: &State,
-) -> (Vec<PictureState>, usize) {
+/// The state of each picture of a part, and how many were drawn otherwise.
+fn done(planned: &[JobPlan], ours: &[(usize, usize)], state: &State) -> (Vec<PictureState>, usize) {
     let driver = driver(planned, state);
     let of = |(job, index): &(usize, usize)| {
         let one = &planned[*job];
@@ -342,17 +338,17 @@ fn done(
             Some(_) => PictureState::Otherwise,
         }
     };
-    let done: Vec<_> = share.iter().map(of).collect();
+    let done: Vec<_> = ours.iter().map(of).collect();
     let stale = done.iter().filter(|one| **one == PictureState::Otherwise);
     let stale = stale.count();
     (done, stale)
 }
 
-fn missing<'a>(planned: &'a [JobPlan], share: &[(usize, usize)], state: &State) -> Vec<&'a str> {
+fn missing<'a>(planned: &'a [JobPlan], ours: &[(usize, usize)], state: &State) -> Vec<&'a str> {
     let name = |(job, index): &(usize, usize)| planned[*job].plan.pictures[*index].1.as_str();
     let entry = |name: &str| state.entries.get(name);
     let is_missing = |name: &&str| !entry(name).is_some_and(StateRecord::is_there);
-    share.iter().map(name).filter(is_missing).collect()
+    ours.iter().map(name).filter(is_missing).collect()
 }
 
 fn refuse(missing: &[&str]) -> Result<(), Failure> {

@@ -22,7 +22,7 @@ use super::report::{Answer, FrameRecord};
 use super::scenes::SceneArgs;
 use super::values;
 pub(super) use drawn::{Pixels, RenderedPicture};
-pub(super) use part::RunShare;
+pub(super) use part::RunPart;
 
 /// What becomes of pictures, and of what is measured.
 #[derive(Debug, Args)]
@@ -31,7 +31,7 @@ pub(super) struct PictureArgs {
     ///
     /// The pictures keep the numbers that they have without --part. N jobs with K from 1 to N therefore draw all of them.
     #[arg(long, value_name = "K/N")]
-    part: Option<RunShare>,
+    part: Option<RunPart>,
     /// Skip pictures whose files exist, without checking what is in the files
     ///
     /// After an interruption, the same command with this flag draws the missing pictures.

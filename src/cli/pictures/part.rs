@@ -1,16 +1,16 @@
-//! `--part` and `--shard`: the share of one of several jobs.
+//! `--part`: the part of several jobs that one of them draws.
 
 use std::fmt;
 use std::str::FromStr;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(in super::super) struct RunShare {
+pub(in super::super) struct RunPart {
     /// The number of the part, from 1.
     number: u32,
     of: u32,
 }
 
-impl FromStr for RunShare {
+impl FromStr for RunPart {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
@@ -25,7 +25,7 @@ impl FromStr for RunShare {
     }
 }
 
-impl RunShare {
+impl RunPart {
     /// The ones of `all` that are in this part. Parts follow each other, and differ by one at most.
     pub(super) fn take_from<T>(self, mut all: Vec<T>) -> Vec<T> {
         let count = all.len() as u128;
@@ -42,7 +42,7 @@ impl RunShare {
     }
 }
 
-impl fmt::Display for RunShare {
+impl fmt::Display for RunPart {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         write!(f, "{}/{}", self.number, self.of)
     }

@@ -1,7 +1,7 @@
-//! The share of one of several workers: by `--shard`, or as an array job of a scheduler says.
+//! The part of one of several workers: by `--part`, or as an array job of a scheduler says.
 
 use super::super::failure::Failure;
-use super::super::pictures::RunShare;
+use super::super::pictures::RunPart;
 
 /// A scheduler sets these for a task of an array: its index, the first index, the last one, and the step between two.
 const SCHEDULERS: [[&str; 4]; 2] = [
@@ -27,12 +27,14 @@ const INDICES: [(&str, u32); 3] = [
 ];
 
 /// The number of workers, for schedulers that do not say it.
-const COUNT: &str = "RARA_SHARDS";
+const COUNT: &str = "RARA_PARTS";
+/// What this was called before.
+const COUNT_BEFORE: &str = "RARA_SHARDS";
 
-/// The share of this process, if it is a task of an array.
+/// The part of this process, if it is a task of an array.
 pub(super) fn of_scheduler(
     variable: impl Fn(&str) -> Option<String>,
-) -> Result<Option<RunShare>, Failure> {
+) -> Result<Option<RunPart>, Failure> {
     let number = |name: &str| variable(name).and_then(|text| text.trim().parse::<u32>().ok());
     for [index, first, last, step] in SCHEDULERS {
         // Outside of an array SGE sets "undefined".
@@ -48,7 +50,7 @@ pub(super) fn of_scheduler(
             || !(at - first).is_multiple_of(step)
         {
             return Err(Failure::Usage(format!(
-                "{index} is {at}, of indices that do not follow each other in equal steps: say which share this is by --shard K/N"
+                "{index} is {at}, of indices that do not follow each other in equal steps: say which part this is by --part K/N"
             )));
         }
         return part((at - first) / step + 1, all).map(Some);
@@ -57,9 +59,9 @@ pub(super) fn of_scheduler(
         let Some(at) = number(index) else {
             continue;
         };
-        let Some(count) = number(COUNT) else {
+        let Some(count) = number(COUNT).or_else(|| number(COUNT_BEFORE)) else {
             return Err(Failure::Usage(format!(
-                "{index} is {at}, and nothing says of how many: set {COUNT} to the number of workers, or give --shard K/N"
+                "{index} is {at}, and nothing says of how many: set {COUNT} to the number of workers, or give --part K/N"
             )));
         };
         let Some(number) = at.checked_sub(first) else {
@@ -72,14 +74,14 @@ pub(super) fn of_scheduler(
     Ok(None)
 }
 
-fn part(number: u32, of: u32) -> Result<RunShare, Failure> {
+fn part(number: u32, of: u32) -> Result<RunPart, Failure> {
     format!("{number}/{of}").parse().map_err(Failure::Usage)
 }
 
 /// Says which of the pictures are a part's, by the number of the scene and the work of each. Parts follow each other, so that few
 /// workers load a scene. Within a scene, neighbours are spread over its parts, since they take about equally long, and more or
 /// less than others of the same estimate.
-pub(super) fn share(part: RunShare, pictures: &[(usize, f64)]) -> Vec<bool> {
+pub(super) fn has(part: RunPart, pictures: &[(usize, f64)]) -> Vec<bool> {
     // The fractions of its multiples are spread evenly.
     const GOLDEN_RATIO: f64 = 1.618_033_988_749_895;
     let place = |index: usize| (index as f64 * GOLDEN_RATIO).fract();

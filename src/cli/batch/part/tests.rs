@@ -10,7 +10,7 @@ fn parse(set: &[(&str, &str)]) -> Result<Option<String>, String> {
 }
 
 #[test]
-fn array_jobs_of_each_scheduler_are_shares() {
+fn array_jobs_of_each_scheduler_are_parts() {
     let slurm = |id, min, max, count| {
         let [a, b, c, d, ..] = [
             "SLURM_ARRAY_TASK_ID",
@@ -38,17 +38,17 @@ fn array_jobs_of_each_scheduler_are_shares() {
     assert!(
         parse(&pod[..1])
             .expect_err("of how many")
-            .contains("RARA_SHARDS")
+            .contains("RARA_PARTS")
     );
     assert!(parse(&[("JOB_COMPLETION_INDEX", "8"), ("RARA_SHARDS", "8")]).is_err());
-    let pbs = |index| parse(&[("PBS_ARRAY_INDEX", index), ("RARA_SHARDS", "3")]);
+    let pbs = |index| parse(&[("PBS_ARRAY_INDEX", index), ("RARA_PARTS", "3")]);
     assert_eq!(pbs("3"), Ok(Some("3/3".into())));
     assert!(pbs("0").expect_err("from 1").contains("from 1"));
     assert_eq!(parse(&[]), Ok(None));
 }
 
 #[test]
-fn each_picture_is_in_one_share_and_shares_are_balanced() {
+fn each_picture_is_in_one_part_and_parts_are_balanced() {
     let work: Vec<(usize, f64)> = (0..100)
         .map(|n| (n / 40, (1 + n * 7 % 13) as f64))
         .collect();
@@ -56,7 +56,7 @@ fn each_picture_is_in_one_share_and_shares_are_balanced() {
     for of in [1, 3, 8, 100, 250] {
         let mut taken = vec![0; work.len()];
         for number in 1..=of {
-            let wanted = share(part(number, of).expect("a part"), &work);
+            let wanted = has(part(number, of).expect("a part"), &work);
             let sum: f64 = (wanted.iter().zip(&work))
                 .filter_map(|(wanted, (_, work))| wanted.then_some(work))
                 .sum();
@@ -66,8 +66,8 @@ fn each_picture_is_in_one_share_and_shares_are_balanced() {
         }
         assert!(taken.iter().all(|taken| *taken == 1), "{of}");
     }
-    assert_eq!(share(part(1, 2).expect("a part"), &[(0, 0.0)]), [true]);
-    assert_eq!(share(part(2, 2).expect("a part"), &[(0, 0.0)]), [false]);
+    assert_eq!(has(part(1, 2).expect("a part"), &[(0, 0.0)]), [true]);
+    assert_eq!(has(part(2, 2).expect("a part"), &[(0, 0.0)]), [false]);
 }
 
 #[test]
@@ -76,10 +76,10 @@ fn pictures_of_one_scene_that_take_longer_and_longer_are_spread() {
     let seconds = |number: usize| 1.0 + number as f64 / 100.0;
     let all: f64 = (0..300).map(seconds).sum();
     for number in 1..=10 {
-        let ours = share(part(number, 10).expect("a part"), &pictures);
+        let ours = has(part(number, 10).expect("a part"), &pictures);
         let ours = (0..300).filter(|&index| ours[index]).map(seconds);
         let share = 10.0 * ours.sum::<f64>() / all;
-        // Neighbours in one share would be 36 % off.
+        // Neighbours in one part would be 36 % off.
         assert!((share - 1.0).abs() < 0.03, "{number}: {share}");
     }
 }

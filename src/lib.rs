@@ -41,8 +41,9 @@ pub mod scene {
         save_with, saved_format, stated_up,
     };
     pub use rara_scene::{
-        Attribute, Axis, Bounds, Comparison, GaussianArrays, Gaussians, Kind, Layer, LayerState,
-        Part, Predicate, Property, Scene, cross_section, extent_along, generate, sh_coefficients,
+        Attribute, Axis, Bounds, Clusters, Comparison, GaussianArrays, Gaussians, Kind, Layer,
+        LayerState, Part, Predicate, Property, Scene, cross_section, extent_along, generate,
+        sh_coefficients,
     };
     #[cfg(all(feature = "formats", feature = "json"))]
     pub use rara_scene::{layers, trained_folder};

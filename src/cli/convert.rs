@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use glam::{DQuat, DVec3};
-use rara::scene::{self, Annotations, Format, Part, SaveOptions};
+use rara::scene::{self, Annotations, Clusters, Format, Part, SaveOptions};
 use rara::{Clip, Gaussians, LayerState, Placement};
 use serde::Serialize;
 use serde_json::json;
@@ -25,6 +25,7 @@ Examples:
   rara convert scene.ply -o scene.spz
   rara convert scene.sog -o scene.ply
   rara convert scene.ply -o core.compressed.ply --clip sphere:0,0,0,2 --min-opacity 0.01
+  rara convert scan.ply -o clean.ply --min-opacity 0.05 --min-cluster 100
   rara convert scene.splat -o turned.glb --rotate 1,0,0,180 --scale 0.1 --move 0,1,0
   rara convert body.ply organ.ply -o both.sog --sh-degree 1
   rara convert body.ply organ.ply -o small_{{}}.spz
@@ -42,6 +43,16 @@ pub(super) struct Convert {
     /// Leave out Gaussians with a smaller opacity, 0 to 1
     #[arg(long, value_name = "A", value_parser = values::share)]
     min_opacity: Option<f32>,
+    /// Leave out floaters: Gaussians in clusters of fewer than N
+    ///
+    /// Gaussians that touch each other, one by the next, are a cluster of their layer. Two touch if their ellipsoids of two
+    /// standard deviations do. What --clip and --min-opacity leave out joins nothing. To see the floaters first, draw the scene
+    /// with --select 'floaters=cluster_size<N'.
+    #[arg(long, value_name = "N")]
+    min_cluster: Option<u32>,
+    /// Leave out all but the largest cluster of each layer
+    #[arg(long)]
+    largest_cluster: bool,
     /// Leave out spherical harmonics above degree N, 0 to 3
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=3))]
     sh_degree: Option<u32>,
@@ -77,6 +88,7 @@ struct ConvertJson {
     hidden: usize,
     clipped: usize,
     faint: usize,
+    floating: usize,
     lost: usize,
     written: usize,
     /// The number of Gaussians that were written with the least or greatest value of the format in place of their own.
@@ -93,6 +105,7 @@ impl ConvertJson {
             (self.hidden, "in hidden layers"),
             (self.clipped, "outside the clip"),
             (self.faint, "too faint"),
+            (self.floating, "in small clusters"),
             (self.lost, "beyond single precision where they are placed"),
         ] {
             if count > 0 {
@@ -255,14 +268,40 @@ impl Convert {
             part_of.push(u32::from(is_clipped || is_faint));
         }
         let mut part = gaussians.into_parts(&part_of, 2)?.swap_remove(0);
+        if let Some(floats) = self.floats(&part.gaussians) {
+            document.floating += floats.iter().filter(|floats| **floats).count();
+            let part_of: Vec<u32> = floats.into_iter().map(u32::from).collect();
+            let rest = part.gaussians.into_parts(&part_of, 2)?.swap_remove(0);
+            part = Part {
+                gaussians: rest.gaussians,
+                numbers: numbered(rest.numbers, &part.numbers),
+            };
+        }
         if !lost.is_empty() {
-            let left = without(&lost, count);
-            part.numbers
-                .iter_mut()
-                .for_each(|number| *number = left[*number as usize]);
+            part.numbers = numbered(part.numbers, &without(&lost, count));
         }
         Ok((layer.numbers, part))
     }
+
+    /// For each Gaussian whether its cluster is too small, where any is.
+    fn floats(&self, gaussians: &Gaussians) -> Option<Vec<bool>> {
+        (self.min_cluster.is_some() || self.largest_cluster).then(|| {
+            let clusters = Clusters::of(gaussians);
+            let least = self.min_cluster.unwrap_or(0);
+            let floats = |index| {
+                clusters.size_at(index) < least
+                    || self.largest_cluster && !clusters.is_in_largest(index)
+            };
+            (0..gaussians.len()).map(floats).collect()
+        })
+    }
+}
+
+/// The numbers that those of a part have in what it is a part of.
+fn numbered(mut part: Vec<u32>, of: &[u32]) -> Vec<u32> {
+    part.iter_mut()
+        .for_each(|number| *number = of[*number as usize]);
+    part
 }
 
 /// Writes a scene in the format that the file's name says, and warns of all that the format cannot say, which follows, and of

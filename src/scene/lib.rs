@@ -15,6 +15,7 @@ pub mod camera;
 #[cfg(feature = "json")]
 pub mod camera_files;
 pub mod clip;
+mod clusters;
 mod cross_section;
 pub mod depth;
 #[cfg(feature = "formats")]
@@ -74,6 +75,7 @@ pub use settings::{Decay, ExactForm, Miss, Mode, Raster, Settings, Show};
 
 pub use axis::Axis;
 pub use bounds::{Bounds, extent_along};
+pub use clusters::Clusters;
 pub use cross_section::cross_section;
 pub use gaussians::{GaussianArrays, Gaussians, sh_coefficients};
 #[doc(hidden)]

@@ -2,6 +2,7 @@
 
 use super::{Gaussians, Part, Property, SH_0};
 use crate::clip::Expression;
+use crate::clusters::Clusters;
 use crate::placement::Placement;
 use rara_base::counted::counted;
 use rara_base::error::{Error, Result, shortened};
@@ -46,6 +47,8 @@ pub enum Attribute {
     Opacity,
     /// The largest standard deviation of the Gaussian, in the units of the scene.
     Size,
+    /// The number of Gaussians in its [cluster](Clusters), itself included: small where it floats by itself.
+    ClusterSize,
     /// Red of its colour of degree 0, which is that from all sides where there are no higher degrees: 0 to 1 or beyond.
     Red,
     /// Green of the same.
@@ -203,6 +206,10 @@ impl<'a> Values<'a> {
                 let size = f64::from(gaussians.scales()[i].max_element());
                 f64::from((unit * size) as f32)
             }),
+            Attribute::ClusterSize => {
+                let clusters = Clusters::of(gaussians);
+                Box::new(move |i| clusters.size_at(i).into())
+            }
             Attribute::Red => colour(0),
             Attribute::Green => colour(1),
             Attribute::Blue => colour(2),

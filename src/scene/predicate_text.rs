@@ -10,9 +10,10 @@ use crate::text_reader::{ShapeTree, TextReader, joined, number};
 use rara_base::error::{Error, Result};
 
 /// The attributes that every Gaussian has.
-const ATTRIBUTES: [(&str, Attribute); 5] = [
+const ATTRIBUTES: [(&str, Attribute); 6] = [
     ("opacity", Attribute::Opacity),
     ("size", Attribute::Size),
+    ("cluster_size", Attribute::ClusterSize),
     ("red", Attribute::Red),
     ("green", Attribute::Green),
     ("blue", Attribute::Blue),

@@ -205,6 +205,33 @@ fn what_is_left_out_is_counted() {
 }
 
 #[test]
+fn floaters_are_left_out() {
+    let here = folder("convert-clusters");
+    scene(&here);
+    done(line(&here, "generate general -n 20 -o @/dust.ply"));
+    done(line(
+        &here,
+        "convert @/dust.ply -o @/far.ply --move 1000,0,0",
+    ));
+    done(line(&here, "convert @/scene.ply @/far.ply -o @/scan.ply"));
+    let cleaned = |flags: &str| {
+        let words = format!("convert @/scan.ply -o @/clean.ply {flags} --json");
+        let report = document(line(&here, &words));
+        let counts = ["floating", "written"].map(|name| report[name].as_u64().expect("a count"));
+        assert_eq!(counts[0] + counts[1], 2020, "{report}");
+        let info = document(line(&here, "info @/clean.ply --json"));
+        assert!(centre(&info, "max", 0) < 100.0, "{info}");
+        counts[0]
+    };
+    let floating = cleaned("--min-cluster 30");
+    assert!((20..1000).contains(&floating), "{floating}");
+    assert!(cleaned("--largest-cluster") >= floating);
+    let select = "info @/scan.ply --select floaters=cluster_size<30 --json";
+    let layers = &document(line(&here, select))["layers"];
+    assert_eq!(layers[1]["gaussians"], floating, "{layers}");
+}
+
+#[test]
 fn scenes_are_placed_and_joined() {
     let here = folder("convert-placed");
     scene(&here);

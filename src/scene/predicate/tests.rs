@@ -41,6 +41,8 @@ fn predicates_take_what_their_text_says() {
         ("opacity!=0.1", [1, 0, 1]),
         ("size<0.2", [1, 0, 0]),
         ("size<=0.2", [1, 1, 0]),
+        ("cluster_size<2", [1, 0, 0]),
+        ("cluster_size=2", [0, 1, 1]),
         ("red in 0.2..0.3, 0.5", [0, 1, 1]),
         ("green=0.5 and blue=0.5", [1, 1, 1]),
         ("label in 3,4", [1, 1, 0]),

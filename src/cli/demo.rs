@@ -19,8 +19,9 @@ use super::output::{self, counted, grouped, say};
 use super::scenes;
 use super::session::Session;
 use super::settings::{DeviceArgs, LookArgs};
+use super::sheet::{self, Sheet};
+use super::times;
 use super::values;
-use super::{sheet, times};
 use rara::scene::layers::SceneLayers;
 
 /// Cut a scene through its middle, draw it in all four modes, and measure their errors
@@ -53,6 +54,9 @@ pub(super) struct Demo {
 
 /// Frames of each mode, whose median is shown.
 const FRAMES: u32 = 5;
+
+/// How much larger the sheet shows a piece of each picture.
+const ZOOM: u32 = 6;
 
 /// Colour behind the pictures.
 const PAPER: [f32; 3] = [1.0; 3];
@@ -115,13 +119,17 @@ impl Demo {
         for Shot { mode, picture, .. } in &shots {
             over(picture, PAPER).save(self.output.join(format!("{}.png", mode)))?;
         }
-        let labelled = shots.iter();
-        let labelled = labelled.map(|shot| (shot.mode.to_string(), over(&shot.picture, PAPER)));
-        let labelled: Vec<_> = labelled.collect();
         let [_, hard, _, exact] = [0, 1, 2, 3].map(|index| &shots[index].picture);
-        let piece = hard.width.max(hard.height).div_ceil(sheet::ZOOM);
+        let piece = hard.width.max(hard.height).div_ceil(ZOOM);
         let corner = maps::worst_square(hard, exact, piece)?;
-        sheet::sheet(&labelled, corner).save(self.output.join("sheet.png"))?;
+        let size = (hard.width, 2 * hard.height + sheet::GAP);
+        let count = shots.len() as u32;
+        let mut sheet = Sheet::new(size, count, count)?;
+        for shot in &shots {
+            let magnified = with_piece(&over(&shot.picture, PAPER), corner);
+            sheet.add(shot.mode.name(), &magnified);
+        }
+        sheet.picture().save(self.output.join("sheet.png"))?;
         compiled.into_iter().for_each(say);
         print_frames(&shots);
         if !self.no_reference {
@@ -129,6 +137,20 @@ impl Demo {
         }
         Ok(())
     }
+}
+
+/// A picture, and below it a piece of it, whose left and top are `corner`, in the picture's size.
+fn with_piece(picture: &Picture, corner: [u32; 2]) -> Picture {
+    let (width, height) = (picture.width, picture.height);
+    let mut piece = Picture::filled(width, height, sheet::MARGIN);
+    for (index, pixel) in piece.pixels.iter_mut().enumerate() {
+        let (x, y) = (index as u32 % width, index as u32 / width);
+        *pixel = picture.at(corner[0] + x / ZOOM, corner[1] + y / ZOOM);
+    }
+    let mut both = Picture::filled(width, 2 * height + sheet::GAP, sheet::MARGIN);
+    sheet::paste(&mut both, picture, [0, 0]);
+    sheet::paste(&mut both, &piece, [0, height + sheet::GAP]);
+    both
 }
 
 /// The scene that is drawn if no file is given.

@@ -44,9 +44,9 @@ Examples:
   rara render body.ply organ.ply -o both.png --background 1,1,1
   rara render scene.ply -o view_{}.png --cameras cameras.json --view all
   rara render scene.ply -o flat.png --ortho fit
-  rara render scene.ply -o axial.png --section axial=0.4
-  rara render scene.ply -o slab_{}.png --section coronal=0.1..0.9:9 --section-thickness 2
-  rara render scene.ply -o slice.png --section axial=0.4 --slice --outline 1,1,0
+  rara render scene.ply -o axial.png --section axial=40%
+  rara render scene.ply -o sheet.png --sheet --section coronal=10%..90%:9 --section-thickness 2
+  rara render scene.ply -o slice.png --section axial=40% --slice --outline 1,1,0
   rara render scene.ply -o deep.exr --aov depth,normal,layer,weight,count
   rara render scene.ply -o round.mp4 --path orbit --frames 240 --background white
   rara render scene.ply -o way.apng --cameras cameras.json --path spline:0,7,12 --size 640x360
@@ -316,7 +316,7 @@ impl Render {
             }
         };
         if !self.aov.is_empty() {
-            pictures::takes_channels(self.output.as_deref())?;
+            self.pictures.check_takes_channels(self.output.as_deref())?;
         }
         if settings.show == Show::Count {
             pictures::needs_floats(self.output.as_deref(), pictures::COUNTS)?;

@@ -107,6 +107,10 @@ impl FrameRecord {
         }
     }
 
+    pub(super) fn name(&self) -> &str {
+        &self.name
+    }
+
     /// One of a picture that is made of several, which took as long as these together.
     pub(super) fn together(view: &NamedView, file: Option<&Path>, faces: &[Self]) -> Self {
         let measured = FrameSummary::together(faces.iter().map(|face| &face.measured));

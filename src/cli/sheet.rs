@@ -1,49 +1,96 @@
-//! A contact sheet: pictures side by side, a label over each, and a piece of each magnified below.
+//! Contact sheets: pictures in rows, a label over each.
 
-use rara::Picture;
-
+use rara::{Picture, Result};
 use rara_scene::picture::ink;
 
-/// Pixels between two pictures.
-const GAP: u32 = 4;
-/// Colour of what is between the pictures.
-const MARGIN: [f32; 4] = [0.25, 0.25, 0.25, 1.0];
-const INK: [u8; 3] = [255; 3];
-pub(super) const ZOOM: u32 = 6;
+use super::memory;
 
-/// Pictures of one size with their labels, and under each the same piece of it, magnified; `corner` is the piece's
-/// left and top.
-pub(super) fn sheet(pictures: &[(String, Picture)], corner: [u32; 2]) -> Picture {
-    let Some((_, first)) = pictures.first() else {
-        return Picture::default();
-    };
-    let (width, height) = (first.width, first.height);
-    let (label, height_of_label) = match width {
-        0..256 => (ink::Font::Small, 11),
-        _ => (ink::Font::Large, 22),
-    };
-    let scale = (width / 200).max(1);
-    let band = height_of_label * scale;
-    let count = pictures.len() as u32;
-    let mut sheet = Picture::filled(count * (width + GAP) - GAP, band + 2 * height + GAP, MARGIN);
-    for (column, (words, picture)) in (0..).zip(pictures) {
-        let left = column * (width + GAP);
-        let at = [left + 2 * scale, 2 * scale].map(f64::from);
-        ink::text(&mut sheet, at, words, (label, scale.into()), INK);
-        for y in 0..height {
-            for x in 0..width {
-                set(&mut sheet, left + x, band + y, picture.at(x, y));
-                let near = picture.at(corner[0] + x / ZOOM, corner[1] + y / ZOOM);
-                set(&mut sheet, left + x, band + height + GAP + y, near);
-            }
-        }
-    }
-    sheet
+/// Pixels between two pictures.
+pub(super) const GAP: u32 = 4;
+/// Colour of what is between the pictures.
+pub(super) const MARGIN: [f32; 4] = [0.25, 0.25, 0.25, 1.0];
+const INK: [u8; 3] = [255; 3];
+
+/// A sheet that is filled with pictures of one size, row by row.
+pub(super) struct Sheet {
+    picture: Picture,
+    size: (u32, u32),
+    columns: u32,
+    count: u32,
 }
 
-fn set(picture: &mut Picture, x: u32, y: u32, pixel: [f32; 4]) {
-    if x < picture.width && y < picture.height {
-        picture.pixels[y as usize * picture.width as usize + x as usize] = pixel;
+impl Sheet {
+    /// An empty sheet with room for so many pictures of a size, in so many columns; of 0 columns there are as many as make it
+    /// about square.
+    pub(super) fn new(size: (u32, u32), count: u32, columns: u32) -> Result<Self> {
+        let (width, height) = (size.0 + GAP, band(size.0) + size.1 + GAP);
+        let square = (f64::from(count) * f64::from(height) / f64::from(width)).sqrt();
+        let columns = match columns {
+            0 => square.round() as u32,
+            columns => columns,
+        };
+        let columns = columns.clamp(1, count.max(1));
+        let (across, down) = (
+            columns * width - GAP,
+            count.div_ceil(columns) * height - GAP,
+        );
+        memory::check_picture((across, down), 0)?;
+        Ok(Self {
+            picture: Picture::filled(across, down, MARGIN),
+            size,
+            columns,
+            count: 0,
+        })
+    }
+
+    /// Puts the next picture on the sheet.
+    pub(super) fn add(&mut self, label: &str, picture: &Picture) {
+        let (width, height) = self.size;
+        let band = band(width);
+        let (column, row) = (self.count % self.columns, self.count / self.columns);
+        let corner = [column * (width + GAP), row * (band + height + GAP)];
+        let (font, scale) = lettering(width);
+        let mut words = Picture::filled(width, band, MARGIN);
+        ink::text(
+            &mut words,
+            [2.0 * f64::from(scale); 2],
+            label,
+            (font, scale.into()),
+            INK,
+        );
+        paste(&mut self.picture, &words, corner);
+        paste(&mut self.picture, picture, [corner[0], corner[1] + band]);
+        self.count += 1;
+    }
+
+    pub(super) fn picture(&self) -> &Picture {
+        &self.picture
+    }
+}
+
+/// The letters over pictures of a width: their font, and how many pixels its dots have.
+fn lettering(width: u32) -> (ink::Font, u32) {
+    match width {
+        0..256 => (ink::Font::Small, 1),
+        _ => (ink::Font::Large, width / 200),
+    }
+}
+
+/// How high the label is over pictures of a width.
+fn band(width: u32) -> u32 {
+    match lettering(width) {
+        (ink::Font::Small, scale) => 11 * scale,
+        (_, scale) => 22 * scale,
+    }
+}
+
+/// Puts a picture on another one, as far as it reaches.
+pub(super) fn paste(onto: &mut Picture, picture: &Picture, [left, top]: [u32; 2]) {
+    let width = picture.width.min(onto.width.saturating_sub(left)) as usize;
+    let rows = picture.pixels.chunks_exact(picture.width.max(1) as usize);
+    let below = onto.pixels.chunks_exact_mut(onto.width.max(1) as usize);
+    for (to, from) in below.skip(top as usize).zip(rows) {
+        to[left as usize..][..width].copy_from_slice(&from[..width]);
     }
 }
 
@@ -60,16 +107,22 @@ mod tests {
     }
 
     #[test]
-    fn pictures_stand_side_by_side_and_magnified_below() {
-        let mut red = Picture::filled(12, 12, [1.0, 0.0, 0.0, 1.0]);
-        set(&mut red, 5, 5, [0.0, 1.0, 0.0, 1.0]);
-        let blue = Picture::filled(12, 12, [0.0, 0.0, 1.0, 1.0]);
-        let made = sheet(&[("x".into(), red), ("o".into(), blue)], [5, 5]);
-        assert_eq!((made.width, made.height), (28, 11 + 12 + 4 + 12));
+    fn pictures_stand_in_rows() {
+        let red = Picture::filled(12, 10, [1.0, 0.0, 0.0, 1.0]);
+        let blue = Picture::filled(12, 10, [0.0, 0.0, 1.0, 1.0]);
+        let mut sheet = Sheet::new((12, 10), 3, 2).expect("a sheet");
+        sheet.add("x", &red);
+        sheet.add("a label that is longer than its picture", &blue);
+        sheet.add("", &red);
+        let made = sheet.picture();
+        assert_eq!((made.width, made.height), (28, 11 + 10 + 4 + 11 + 10));
         assert_eq!(made.at(0, 11), [1.0, 0.0, 0.0, 1.0]);
         assert_eq!(made.at(12, 11), MARGIN);
         assert_eq!(made.at(16, 11), [0.0, 0.0, 1.0, 1.0]);
-        assert_eq!(made.at(0, 27), [0.0, 1.0, 0.0, 1.0]);
-        assert_eq!(made.at(6, 27), [1.0, 0.0, 0.0, 1.0]);
+        assert_eq!(made.at(27, 20), [0.0, 0.0, 1.0, 1.0]);
+        assert_eq!(made.at(11, 45), [1.0, 0.0, 0.0, 1.0]);
+        assert_eq!(made.at(16, 36), MARGIN);
+        let across = |count| Sheet::new((640, 360), count, 0).expect("a sheet").columns;
+        assert_eq!([1, 2, 9, 400].map(across), [1, 1, 2, 16]);
     }
 }

@@ -68,12 +68,30 @@ fn a_sweep_writes_what_render_writes() {
     let piped = done(sweep("-o - --format apng --quiet"));
     fs::write(here.join("piped.apng"), &piped.stdout).expect("writes");
     assert!(decoded(&here.join("piped.apng")) == shown);
+    done(sweep("-o @/sheet.exr --sheet --sheet-columns 3"));
+    let [sheet, last] = ["sheet.exr", "float/3.exr"]
+        .map(|file| rara::Picture::load(here.join(file)).expect("a picture"));
+    assert_eq!(sheet.width, 3 * last.width + 8);
+    let top = sheet.height - last.height;
+    for (index, pixel) in last.pixels.iter().enumerate() {
+        let (x, y) = (index as u32 % last.width, index as u32 / last.width);
+        assert_eq!(
+            sheet.at(x, top + y),
+            *pixel,
+            "the fourth is below the first"
+        );
+    }
     for (rest, what) in [
+        ("-o @/frames --sheet", "name that ends in .png or .exr"),
+        ("-o @/sheet.apng --sheet", "name that ends in .png or .exr"),
+        ("-o @/a_{}.png --sheet", "a film or a sheet is one file"),
+        ("-o @/sheet.png --sheet --part 1/2", "a sheet is whole"),
+        ("-o @/one.png --sheet-columns 2", "--sheet"),
         ("-o @/one.png", "a sweep makes several pictures: put {}"),
         ("-o -", "--format apng or rgba"),
         ("-o - --format rgba --json", "both take standard output"),
         ("-o @/sw_{}", "a picture's name ends in .png"),
-        ("-o @/sw_{}.apng", "a film is one file"),
+        ("-o @/sw_{}.apng", "a film or a sheet is one file"),
         ("-o @/frames --fps 9", "--fps is the pace of a film"),
         (
             "-o @/frames --format rgba",
@@ -87,7 +105,14 @@ fn a_sweep_writes_what_render_writes() {
     ] {
         refused(&sweep(rest), 2, what);
     }
-    for new in ["one.png", "frames", "sw_{}", "a_0.png"] {
+    for new in [
+        "one.png",
+        "frames",
+        "sheet.png",
+        "a_{}.png",
+        "sw_{}",
+        "a_0.png",
+    ] {
         assert!(!here.join(new).exists(), "{new}");
     }
 }
@@ -158,7 +183,7 @@ fn parts_together_are_the_whole() {
         ),
         (
             "-o @/a.apng --path orbit --part 1/2",
-            "--part goes picture by picture, and a film is whole",
+            "--part goes picture by picture, and a film or a sheet is whole",
         ),
     ] {
         let words = format!("render @/scene.ply {words}");

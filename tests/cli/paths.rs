@@ -158,8 +158,14 @@ fn what_does_not_go_together_is_refused_by_name() {
             "--fps is the pace of a film",
         ),
         ("-o @/a.gif", ".apng, .mp4"),
-        ("-o @/a_{}.apng --path orbit", "a film is one file"),
-        ("-o @/{name}/a.mp4 --path orbit", "a film is one file"),
+        (
+            "-o @/a_{}.apng --path orbit",
+            "a film or a sheet is one file",
+        ),
+        (
+            "-o @/{name}/a.mp4 --path orbit",
+            "a film or a sheet is one file",
+        ),
         ("-o @/a.apng --path circle", "orbit[:TURNS]"),
         (
             "-o @/a.apng --path orbit --cameras @/cameras.json",

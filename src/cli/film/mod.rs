@@ -11,12 +11,13 @@ use std::path::{Path, PathBuf};
 
 use clap::builder::{OsStringValueParser, TypedValueParser};
 use clap::{Args, ValueEnum};
-use rara::{Error, Picture, Result};
+use rara::{Error, Picture, PngCompression, Result};
 use rara_base::files::PartialFile;
 
 use super::failure::Failure;
 use super::output::{self, STANDARD};
 use super::pattern::is_several;
+use super::sheet::Sheet;
 use super::values;
 use apng::Apng;
 #[cfg(unix)]
@@ -40,6 +41,14 @@ pub(super) struct FilmArgs {
     /// An .apng always keeps it; .mp4 and .mkv cannot.
     #[arg(long)]
     alpha: bool,
+    /// Put all pictures on one sheet, in rows, with their names
+    ///
+    /// The sheet is the .png or .exr file of -o. All pictures have one size, that of --size.
+    #[arg(long, help_heading = None)]
+    sheet: bool,
+    /// Columns of the sheet [default: as many as make it about square]
+    #[arg(long, value_name = "N", requires = "sheet", value_parser = clap::value_parser!(u32).range(1..), help_heading = None)]
+    sheet_columns: Option<u32>,
     /// Pictures a second that a file of cameras says.
     #[arg(skip)]
     said: Option<u16>,
@@ -68,6 +77,8 @@ pub(super) enum FilmFormat {
     Raw,
     /// Encoded by ffmpeg.
     Video(Container),
+    /// All pictures on a sheet.
+    Sheet,
 }
 
 /// The file name of a picture or a film; its ending says the format.
@@ -78,6 +89,11 @@ pub(super) fn film_path(path: OsString) -> std::result::Result<PathBuf, String> 
         false => values::picture_path(path)
             .map_err(|error| format!("{error}, a film's in .apng, {}", ENDINGS)),
     }
+}
+
+/// True for a file that can hold a sheet.
+fn is_sheet(file: &Path) -> bool {
+    output::ends_in(file, "png") || output::ends_in(file, "exr")
 }
 
 /// The parser of the file name of a picture or a film, or of a folder.
@@ -138,6 +154,15 @@ impl FilmArgs {
                 output.and_then(|path| FilmFormat::from_path(path, self.alpha))
             }
         };
+        let kind = match (self.sheet, kind) {
+            (false, kind) => kind,
+            (true, None) if output.is_some_and(is_sheet) => Some(FilmFormat::Sheet),
+            (true, _) => {
+                return Err(Failure::Usage(
+                    "--sheet puts all pictures on one sheet: give -o a name that ends in .png or .exr".into(),
+                ));
+            }
+        };
         if self.alpha && kind.is_none() {
             return Err(Failure::Usage(
                 "--alpha keeps the transparency of a film: give -o a name that ends in .mov or .webm, or leave it out, as \
@@ -157,7 +182,8 @@ impl FilmArgs {
     pub(super) fn check(&self, kind: FilmFormat, file: &Path) -> std::result::Result<(), Failure> {
         if is_several(file) {
             return Err(Failure::Usage(
-                "a film is one file: leave the braces out of its name, or name numbered pictures, as frame_{:04}.png".into(),
+                "a film or a sheet is one file: leave the braces out of its name, or name numbered pictures, as frame_{:04}.png"
+                    .into(),
             ));
         }
         if matches!(kind, FilmFormat::Video(_)) {
@@ -175,6 +201,11 @@ impl FilmArgs {
         frames: usize,
     ) -> Result<Film> {
         let fps = self.fps.or(self.said).unwrap_or(FPS);
+        if kind == FilmFormat::Sheet {
+            let columns = self.sheet_columns.unwrap_or(0);
+            let sheet = Sheet::new(size, frames as u32, columns)?;
+            return Ok(Film::Sheet(sheet, file.into()));
+        }
         let place = match file == Path::new(STANDARD) {
             true => FilmTarget::Stdout,
             false => FilmTarget::File(PartialFile::begin(file)?),
@@ -193,22 +224,28 @@ pub(super) enum Film {
     Apng(Apng),
     Raw(FilmTarget),
     Video(Video),
+    /// A sheet, and its file.
+    Sheet(Sheet, PathBuf),
 }
 
 impl Film {
-    /// Writes the next picture; false when its reader wants no more of them.
-    pub(super) fn add(&mut self, picture: &Picture) -> Result<bool> {
-        let bytes = picture.to_rgba8();
+    /// Writes the next picture, which has a name; false when its reader wants no more of them.
+    pub(super) fn add(&mut self, name: &str, picture: &Picture) -> Result<bool> {
         match self {
-            Self::Apng(film) => film.add(&bytes),
-            Self::Raw(place) => wanted(place.write_all(&bytes), Path::new("stdout")),
-            Self::Video(film) => film.add(&bytes).map(|()| true),
+            Self::Sheet(sheet, _) => sheet.add(name, picture),
+            Self::Apng(film) => return film.add(&picture.to_rgba8()),
+            Self::Raw(place) => {
+                return wanted(place.write_all(&picture.to_rgba8()), Path::new("stdout"));
+            }
+            Self::Video(film) => film.add(&picture.to_rgba8())?,
         }
+        Ok(true)
     }
 
     /// Ends the film and gives its file its name.
-    pub(super) fn finish(self) -> Result<()> {
+    pub(super) fn finish(self, compression: PngCompression) -> Result<()> {
         match self {
+            Self::Sheet(sheet, file) => output::picture(sheet.picture(), &file, compression),
             Self::Apng(film) => film.finish(),
             Self::Raw(place) => place.finish(),
             Self::Video(film) => film.finish(),
@@ -266,7 +303,7 @@ pub(super) fn one_size(
     match sizes.find(|size| *size != first) {
         None => Ok(first),
         Some(other) => Err(Failure::Usage(format!(
-            "the pictures of a film have one size, and these are {}x{} and {}x{}: give --size",
+            "the pictures of a film or a sheet have one size, and these are {}x{} and {}x{}: give --size",
             first.0, first.1, other.0, other.1
         ))),
     }

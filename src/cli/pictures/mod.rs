@@ -69,18 +69,6 @@ pub(super) fn needs_floats(output: Option<&Path>, what: &str) -> Result<(), Fail
     }
 }
 
-/// Refuses channels beside the colours for what has no place for them.
-pub(super) fn takes_channels(output: Option<&Path>) -> Result<(), Failure> {
-    let is_film = |file: &Path| FilmFormat::from_path(file, false).is_some();
-    match output.is_some_and(|file| file == Path::new(STANDARD) || is_film(file)) {
-        false => Ok(()),
-        true => Err(Failure::Usage(
-            "--aov makes channels, which films and standard output do not hold: give -o a name that ends in .exr, .png or .npy"
-                .into(),
-        )),
-    }
-}
-
 /// The place that pictures go to, checked before any work is done.
 pub(super) struct Destination<'a> {
     args: &'a PictureArgs,
@@ -146,6 +134,19 @@ impl PictureArgs {
         }
     }
 
+    /// Refuses channels beside the colours for what has no place for them.
+    pub(super) fn check_takes_channels(&self, output: Option<&Path>) -> Result<(), Failure> {
+        let is_stream = output == Some(Path::new(STANDARD));
+        match is_stream || self.film.kind(output)?.is_some() {
+            false => Ok(()),
+            true => Err(Failure::Usage(
+                "--aov makes channels, which films, sheets and standard output do not hold: give -o a name that ends in .exr, \
+                 .png or .npy"
+                    .into(),
+            )),
+        }
+    }
+
     /// Gives a film so many pictures a second, if there are any and no flag says otherwise.
     pub(super) fn pace(&mut self, fps: Option<f64>) {
         self.film.pace(fps);
@@ -166,7 +167,7 @@ impl PictureArgs {
             OutputTarget::Files(pattern) => check_pattern(pattern, numbers, several)?,
             OutputTarget::Film(kind, file) => {
                 self.film.check(*kind, file)?;
-                if several.is_none() {
+                if several.is_none() && *kind != FilmFormat::Sheet {
                     output::warn_once(
                         "note: this is a film of one picture, as nothing moves; --path orbit moves the camera, and rara sweep a \
                          clip"
@@ -234,13 +235,14 @@ impl PictureArgs {
         let whole = is_given(&["--part", "--skip-existing", "--json-lines"]);
         if let (OutputTarget::Film(..), Some(flag)) = (place, whole) {
             return Err(Failure::Usage(format!(
-                "{flag} goes picture by picture, and a film is whole: leave it out, or name numbered pictures, as -o \
+                "{flag} goes picture by picture, and a film or a sheet is whole: leave it out, or name numbered pictures, as -o \
                  frame_{{:04}}.png"
             )));
         }
         let is_png = match place {
             OutputTarget::Folder(_) => true,
             OutputTarget::Files(file) => is_stream || output::ends_in(file, "png"),
+            OutputTarget::Film(FilmFormat::Sheet, file) => output::ends_in(file, "png"),
             OutputTarget::Nowhere | OutputTarget::Film(..) => false,
         };
         if self.png.is_some() && !is_png {
@@ -271,7 +273,7 @@ fn check_pattern(pattern: &Path, numbers: &[usize], several: Option<&str>) -> Re
         let remedy = match pattern == Path::new(STANDARD) {
             true => "name a file with {} where their number goes, or give --format apng or rgba",
             false => {
-                "put {} where their number goes, as in -o view_{}.png, or name a film, as film.apng"
+                "put {} where their number goes, as in -o view_{}.png, put all on one sheet by --sheet, or name a film, as film.apng"
             }
         };
         return Err(Failure::Usage(format!("{what} several pictures: {remedy}")));

@@ -180,7 +180,7 @@ impl<T> Writer<'_, T> {
             Some(film) => film
                 .lock()
                 .unwrap_or_else(PoisonError::into_inner)
-                .add(&picture),
+                .add(drawn.frame.name(), &picture),
             None if channels.is_empty() => {
                 let compression = self.destination.args.png.unwrap_or_default();
                 output::picture(&picture, file, compression).map(|()| true)
@@ -233,7 +233,9 @@ impl<T> Writer<'_, T> {
         failure.map_or(drawn, Err)?;
         if let Some(film) = self.film {
             let film = film.into_inner().unwrap_or_else(PoisonError::into_inner);
-            self.profile.span("encode", || film.finish())?;
+            self.profile.span("encode", || {
+                film.finish(self.destination.args.png.unwrap_or_default())
+            })?;
             let first = self.planned.first().zip(written.pictures.first());
             if let (Some(order), Some((one, frame))) = (self.destination.order, first)
                 && let Some(file) = &one.file

@@ -105,6 +105,12 @@ impl Regions {
         Ok(all)
     }
 
+    /// The clip in an example of a scene, together with other expressions.
+    pub(super) fn example(&self, others: Option<Expression>) -> Clip {
+        let all = self.all.iter().map(|region| region.example().clone());
+        joined(&all.chain(others).collect::<Vec<_>>(), self.op)
+    }
+
     /// Gives layers the clips that files have for them, unless a flag says otherwise, and saves all clips where that is wanted.
     pub fn settle(&self, loaded: &mut SceneLayers) -> Result<(), Failure> {
         for (name, clip) in &self.layers {

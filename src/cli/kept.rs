@@ -7,7 +7,7 @@ use rara::{HeadlessDesc, Result, Scene, ShFormat};
 use super::failure::Failure;
 use super::profile::Profile;
 use super::scenes::SceneArgs;
-use super::session::Session;
+use super::session::{FirstFrame, Session, SessionAhead};
 use rara::scene::layers::{LayerClip, SceneLayers};
 
 /// What the last command has left; nothing where a command runs by itself.
@@ -24,6 +24,7 @@ pub(super) struct ScenePlace {
     /// The clips of its layers before a command changes them.
     clips: Vec<Option<LayerClip>>,
     session: Option<Session>,
+    ahead: Option<SessionAhead>,
 }
 
 impl SessionCache {
@@ -36,12 +37,13 @@ impl SessionCache {
     }
 
     /// The scene that these flags name, as the last command has left it or from its files. `device` stands for everything
-    /// that the session depends on.
+    /// that the session depends on. While files are read, a session for the first frame is opened, if that is known.
     pub(super) fn load(
         &mut self,
         profile: &Profile,
         scenes: &SceneArgs,
         device: &impl Debug,
+        first: Option<FirstFrame>,
     ) -> std::result::Result<(ScenePlace, SceneLayers), Failure> {
         let flags = format!("{scenes:?} {device:?}");
         if let Some((place, mut loaded)) = self.last.take() {
@@ -53,6 +55,7 @@ impl SessionCache {
             }
             place.close()?; // before the next scene needs the memory
         }
+        let ahead = first.map(SessionAhead::begin);
         let loaded = profile.span("load", || scenes.load())?;
         let place = ScenePlace {
             flags,
@@ -62,6 +65,7 @@ impl SessionCache {
                 .map(|layer| layer.clip.clone())
                 .collect(),
             session: None,
+            ahead,
         };
         Ok((place, loaded))
     }
@@ -97,10 +101,14 @@ impl ScenePlace {
         scene: Scene<'_>,
         sh: ShFormat,
     ) -> std::result::Result<Session, Failure> {
-        match self.session.take() {
+        if let Some(mut session) = self.session.take() {
+            session.set_layer_clips(&scene)?;
+            return Ok(session);
+        }
+        match self.ahead.take().and_then(SessionAhead::end) {
             Some(mut session) => {
-                session.set_layer_clips(&scene)?;
-                Ok(session)
+                session.headless.load_as(scene, sh)?;
+                Ok(profile.opened(session))
             }
             None => profile.open(device, scene, sh),
         }

@@ -92,7 +92,7 @@ fn available() -> Option<u64> {
 }
 
 /// True under `ulimit -v`.
-fn address_space_is_limited() -> bool {
+pub(super) fn address_space_is_limited() -> bool {
     let limits = std::fs::read_to_string("/proc/self/limits").unwrap_or_default();
     let line = limits
         .lines()

@@ -102,6 +102,12 @@ impl<R> Moving<R> {
 }
 
 impl Moving<Region> {
+    /// The expression of the first frame in an example of a scene.
+    pub(super) fn example(&self) -> Option<Expression> {
+        let example = self.map(|region| Ok(region.example().clone()));
+        example.and_then(|example| example.at(0)).ok()
+    }
+
     /// The same in a scene.
     pub(super) fn in_scene(&self, scene: &Scene<'_>) -> rara::Result<Moving<Expression>> {
         let bounds = LazyCell::new(|| Bounds::of(scene));

@@ -3,11 +3,12 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use rara::{HeadlessDesc, Scene, ShFormat, Trace};
+use rara::{Clip, HeadlessDesc, Scene, Settings, ShFormat, Trace};
 
 use super::failure::Failure;
+use super::memory;
 use super::output;
-use super::session::Session;
+use super::session::{FirstFrame, Session};
 use super::values;
 
 /// Recordings to make beside the pictures.
@@ -65,7 +66,25 @@ impl Profile {
         self.trace.is_some()
     }
 
-    /// Opens a session that records what the profile needs, with a note if its device has no statistics.
+    /// The frame that a session may draw ahead; none where a trace is to show one thing after the other, and where the driver may
+    /// find no memory, which is checked once the scene is known.
+    pub(super) fn first_frame(
+        &self,
+        device: HeadlessDesc,
+        layers: usize,
+        (clip, settings): (Clip, Settings),
+    ) -> Option<FirstFrame> {
+        let device = device.statistics(self.statistics);
+        let is_late = self.is_traced() || memory::address_space_is_limited();
+        (!is_late).then_some(FirstFrame {
+            device,
+            layers,
+            clip,
+            settings,
+        })
+    }
+
+    /// Opens a session that records what the profile needs.
     pub(super) fn open(
         &self,
         device: HeadlessDesc,
@@ -73,11 +92,15 @@ impl Profile {
         sh: ShFormat,
     ) -> Result<Session, Failure> {
         let device = device.trace(self.trace.clone()).statistics(self.statistics);
-        let session = Session::open(&device, scene, sh)?;
+        Ok(self.opened(Session::open(&device, scene, sh)?))
+    }
+
+    /// A session that has been opened, with a note if its device has no statistics.
+    pub(super) fn opened(&self, session: Session) -> Session {
         if self.statistics && !session.headless.device().support().pipeline_statistics {
             output::say("note: this device counts nothing (no pipelineStatisticsQuery)");
         }
-        Ok(session)
+        session
     }
 
     /// Records how long `act` takes.

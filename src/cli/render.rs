@@ -141,6 +141,17 @@ impl Pictures {
         }
     }
 
+    /// The clip of the first picture in an example of a scene. The plane of any section stands for that of each.
+    fn example(&self) -> Clip {
+        let more = match self {
+            Self::Views(_, _, moving) => moving.as_ref().and_then(|moving| moving.example()),
+            Self::Sections(_) => Region::shape("plane:1,0,0,0")
+                .ok()
+                .map(|one| one.example().clone()),
+        };
+        self.regions().example(more)
+    }
+
     /// The pictures, once the scene is known.
     fn shots(self, scene: &Scene<'_>) -> Result<Vec<Shot>, Failure> {
         Ok(match self {
@@ -386,7 +397,12 @@ impl Render {
     ) -> Result<(), Failure> {
         let (device, sh) = (&self.frame.device, settings.precision.sh);
         let session_of = (device, &self.profile, sh);
-        let (mut place, mut loaded) = kept.load(profile, &self.scenes, &session_of)?;
+        let example = (pictures.example(), *settings);
+        let layers = self.scenes.places().len();
+        let first = profile.first_frame(self.frame.device.meant(), layers, example);
+        // A slice is another scene, drawn in another way.
+        let first = first.filter(|_| !self.slice.is_shown());
+        let (mut place, mut loaded) = kept.load(profile, &self.scenes, &session_of, first)?;
         let regions = pictures.regions().clone();
         regions.settle(&mut loaded)?;
         let scene = loaded.scene();

@@ -3,10 +3,14 @@
 //! What a driver compiles when a shader is used first would be in the time of the first frame, so a frame is measured
 //! after one that is not; what that one took longer is reported by itself.
 
+use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
+use glam::DVec3;
+use rara::scene::{Bounds, Kind, generate};
 use rara::{
-    Camera, Clip, FrameStats, Headless, HeadlessDesc, Picture, Result, Scene, Settings, ShFormat,
+    Camera, Clip, FrameStats, Headless, HeadlessDesc, Layer, Picture, Result, Scene, Settings,
+    ShFormat,
 };
 
 use super::combine::FrameSummary;
@@ -17,6 +21,38 @@ pub(super) struct Session {
     pub(super) headless: Headless,
     /// Times from recording to the picture of the frames that are not measured, milliseconds.
     first_ms: Vec<f64>,
+}
+
+/// The first frame of a command, as far as it is known before its scene is read.
+pub(super) struct FirstFrame {
+    pub(super) device: HeadlessDesc,
+    pub(super) layers: usize,
+    pub(super) clip: Clip,
+    pub(super) settings: Settings,
+}
+
+/// A session that a thread opens while the scene is read. It draws an example of a scene meanwhile, so that the driver compiles
+/// the first frame's shaders.
+pub(super) struct SessionAhead(Option<JoinHandle<Result<Session>>>);
+
+impl SessionAhead {
+    pub(super) fn begin(first: FirstFrame) -> Self {
+        process::make_drivers_folder();
+        let named = thread::Builder::new().name("compiling".into());
+        Self(named.spawn(move || Session::of_example(&first)).ok())
+    }
+
+    /// The session. What has kept it from being there is found again by whoever opens it then.
+    pub(super) fn end(mut self) -> Option<Session> {
+        self.0.take()?.join().ok()?.ok()
+    }
+}
+
+/// The thread ends before the process does, which would take away what its driver uses.
+impl Drop for SessionAhead {
+    fn drop(&mut self) {
+        drop(self.0.take().map(JoinHandle::join));
+    }
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -54,6 +90,18 @@ impl Session {
             headless,
             first_ms: Vec::new(),
         })
+    }
+
+    /// Opens a session that has drawn an example of a scene.
+    fn of_example(first: &FirstFrame) -> Result<Self> {
+        let gaussians = generate(Kind::General, 500, 1);
+        let up = -DVec3::Y;
+        let camera = Camera::frame(&Bounds::of(&gaussians), up, 50.0, (64, 64))?;
+        let layer = |number: usize| Layer::new(number.to_string(), &gaussians);
+        let scene: Scene<'_> = (0..first.layers.max(1)).map(layer).collect();
+        let mut session = Self::open(&first.device, scene, first.settings.precision.sh)?;
+        session.fresh(&camera, &first.clip, &first.settings)?;
+        Ok(session)
     }
 
     /// Draws frames that are not measured, so that the driver compiles their shaders before the measured frames. Each frame may

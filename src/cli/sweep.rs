@@ -177,7 +177,10 @@ impl Sweep {
         } = plan;
         let (device, sh) = (&self.frame.device, settings.precision.sh);
         let session_of = (device, &self.profile, sh);
-        let (mut place, mut loaded) = kept.load(profile, &self.scenes, &session_of)?;
+        let example = (regions.example(moving.example()), settings);
+        let layers = self.scenes.places().len();
+        let first = profile.first_frame(self.frame.device.meant(), layers, example);
+        let (mut place, mut loaded) = kept.load(profile, &self.scenes, &session_of, first)?;
         regions.settle(&mut loaded)?;
         layer_names::tell_own_clips(&loaded);
         let scene = loaded.scene();

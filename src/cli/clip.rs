@@ -4,7 +4,9 @@ use std::cell::LazyCell;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use rara::clip::{Expression, NamedClip, Solid, are_alternatives, clips_to_json, load_clips};
+use rara::clip::{
+    Expression, NamedClip, Prism, Solid, are_alternatives, clips_to_json, load_clips,
+};
 use rara::{Bounds, Clip, ClipOp, Plane, Scene, Shape};
 
 use super::failure::Failure;
@@ -48,7 +50,7 @@ pub struct ClipArgs {
 }
 
 fn shapes() -> String {
-    let usages: Vec<&str> = Solid::usages().collect();
+    let usages: Vec<&str> = Solid::usages().chain([Prism::USAGE]).collect();
     format!(
         "Keep the inside of a shape (repeatable); '!SHAPE' keeps its outside\n\n{} plane:x=40% is \
          perpendicular to the x axis at 40 % of the scene's robust bounds, and keeps the side of larger x. slab:z=40%..60% is \

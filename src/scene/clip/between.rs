@@ -8,7 +8,7 @@ use rara_base::error::{Error, Result};
 
 impl Expression {
     /// Returns the region at a share of the way from this one to another: 0 is this one, 1 the other. Both must have the same
-    /// kinds of shapes in the same order. Points, sizes and radii are interpolated linearly, and rotations and normals of
+    /// kinds of shapes in the same order, and prisms as many corners. Points, sizes and radii are interpolated linearly, and rotations and normals of
     /// planes along the shortest arcs. Planes that have a line in common keep it.
     ///
     /// ```
@@ -37,6 +37,15 @@ impl Expression {
             }
             (Self::Any(from), Self::Any(to)) if from.len() == to.len() => {
                 Self::Any(each(from, to)?)
+            }
+            (Self::Prism(from), Self::Prism(to)) => {
+                let made = from.between(to, share);
+                let made = made.ok_or_else(|| unlike(self, other))?;
+                match share {
+                    0.0 => self.clone(),
+                    1.0 => other.clone(),
+                    _ => Self::Prism(made?),
+                }
             }
             (Self::Not(from), Self::Not(to)) => Self::Not(Box::new(from.between(to, share)?)),
             _ => return Err(unlike(self, other)),

@@ -5,13 +5,15 @@ use std::collections::HashMap;
 use std::fmt;
 use std::path::Path;
 
+use glam::DVec2;
 use serde::de::{EnumAccess, Error as _, MapAccess, SeqAccess, Unexpected, VariantAccess, Visitor};
 use serde::ser::SerializeStructVariant;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
+use super::expression::POLYGON;
 use super::shape_text::{kind, names};
 use super::solid::Kind;
-use super::{Expression, Plane, Shape};
+use super::{Expression, Plane, Prism, Shape};
 use rara_base::error::{Error, Result};
 use rara_base::json;
 
@@ -50,12 +52,33 @@ struct ClipRecord<'a> {
     clip: &'a Expression,
 }
 
+/// A prism as JSON has it: the polygon and its holes, each as its corners.
+#[derive(Serialize, Deserialize)]
+struct PrismRecord {
+    axis: String,
+    rings: Vec<Vec<[f64; 2]>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    heights: Option<[f64; 2]>,
+}
+
+impl From<&Prism> for PrismRecord {
+    fn from(prism: &Prism) -> Self {
+        let ring = |ring: &Vec<DVec2>| ring.iter().map(|corner| corner.to_array()).collect();
+        Self {
+            axis: prism.axis().into(),
+            rings: prism.rings().iter().map(ring).collect(),
+            heights: prism.heights(),
+        }
+    }
+}
+
 /// An expression as JSON has it, of which nothing but its form is known.
 enum Node {
     Whole,
     All(Vec<Node>),
     Any(Vec<Node>),
     Not(Box<Node>),
+    Prism(PrismRecord),
     /// The kind of a solid, and its numbers.
     Solid(&'static Kind, Vec<f64>),
 }
@@ -72,7 +95,11 @@ impl<'de> Visitor<'de> for NodeVisitor {
     type Value = Node;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "whole, all, any, not or a shape ({})", names())
+        write!(
+            f,
+            "whole, all, any, not or a shape ({}, {POLYGON})",
+            names()
+        )
     }
 
     fn visit_enum<A: EnumAccess<'de>>(self, node: A) -> std::result::Result<Node, A::Error> {
@@ -82,6 +109,7 @@ impl<'de> Visitor<'de> for NodeVisitor {
             "all" => content.newtype_variant().map(Node::All),
             "any" => content.newtype_variant().map(Node::Any),
             "not" => content.newtype_variant().map(Node::Not),
+            POLYGON => content.newtype_variant().map(Node::Prism),
             _ => match kind(&name) {
                 Some(kind) => {
                     let numbers = content.struct_variant(&[], kind)?;
@@ -147,6 +175,9 @@ impl Serialize for Expression {
             Self::All(all) => to.serialize_newtype_variant("Node", 0, "all", all),
             Self::Any(any) => to.serialize_newtype_variant("Node", 0, "any", any),
             Self::Not(operand) => to.serialize_newtype_variant("Node", 0, "not", operand),
+            Self::Prism(prism) => {
+                to.serialize_newtype_variant("Node", 0, POLYGON, &PrismRecord::from(prism))
+            }
             Self::Shape(shape) if shape.is_outside() => {
                 let inside = Self::Shape(shape.complement());
                 to.serialize_newtype_variant("Node", 0, "not", &inside)
@@ -193,6 +224,17 @@ impl Node {
                 }
                 other => Expression::Not(Box::new(other)),
             },
+            Self::Prism(PrismRecord {
+                axis,
+                rings,
+                heights,
+            }) => {
+                let rings: Vec<Vec<DVec2>> = rings
+                    .into_iter()
+                    .map(|ring| ring.into_iter().map(DVec2::from).collect())
+                    .collect();
+                Expression::Prism(Prism::new(&axis, &rings, heights)?)
+            }
             Self::Solid(kind, numbers) => Expression::Shape(Shape::new(kind.solid(&numbers)?)?),
         })
     }
@@ -201,7 +243,8 @@ impl Node {
 /// Loads the clips of a JSON file: a list whose elements have a `"name"` or not, and either `"clip"`, an expression as a
 /// tree, or `"normal"` and `"d"`, a plane. An element with a `"layer"` is the clip of that layer, and `"whole"` as a clip keeps
 /// everything. A node of the tree is `{"all": [...]}`, `{"any": [...]}`, `{"not": ...}` or a shape,
-/// as `{"sphere": {"centre": [x, y, z], "radius": r}}`; quaternions are w, x, y, z.
+/// as `{"sphere": {"centre": [x, y, z], "radius": r}}`; quaternions are w, x, y, z. A [`Prism`] is
+/// `{"polygon": {"axis": "z", "rings": [[[x, y], ...], ...], "heights": [low, high]}}`.
 ///
 /// # Errors
 /// [`Error::Io`] if the file can't be read, [`Error::Format`] if it is no such list or empty, or has a shape without size.

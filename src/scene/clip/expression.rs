@@ -4,7 +4,7 @@ use std::str::FromStr;
 use std::{fmt, slice};
 
 use super::shape_text::{kind, names};
-use super::{Clip, ClipOp, Plane, Shape};
+use super::{Clip, ClipOp, Plane, Prism, Shape};
 use crate::bounds::Bounds;
 use crate::text_reader::{ShapeTree, TextReader, joined};
 use rara_base::error::{Error, Result, shortened};
@@ -27,6 +27,8 @@ use rara_base::error::{Error, Result, shortened};
 pub enum Expression {
     /// A shape.
     Shape(Shape),
+    /// The prism of a polygon.
+    Prism(Prism),
     /// Keeps the points that all of these expressions keep. The list is not empty.
     All(Vec<Expression>),
     /// Keeps the points that at least one of these expressions keeps. The list is not empty.
@@ -34,6 +36,9 @@ pub enum Expression {
     /// Keeps the points that this expression does not keep.
     Not(Box<Expression>),
 }
+
+/// The word with which the text of a prism begins.
+pub(super) const POLYGON: &str = "polygon";
 
 impl Expression {
     /// The plane, if it is a shape that is a half-space.
@@ -44,17 +49,25 @@ impl Expression {
         }
     }
 
+    /// The prism of a text that begins as one, perhaps with a `!` before it.
+    pub(crate) fn prism(text: &str) -> Option<Result<Self>> {
+        let bare = text.trim().trim_start_matches('!').trim_start();
+        let begins = bare.strip_prefix(POLYGON)?.trim_start();
+        begins.starts_with(':').then(|| text.parse())
+    }
+
     /// The region that it keeps.
     pub fn clip(&self) -> Clip {
         match self {
             Self::Shape(shape) => shape.clip(),
+            Self::Prism(prism) => prism.clip(),
             Self::All(all) => Clip::joined(all.iter().map(Self::clip), ClipOp::And),
             Self::Any(any) => Clip::joined(any.iter().map(Self::clip), ClipOp::Or),
             Self::Not(expression) => expression.clip().complement(),
         }
     }
 
-    /// Returns the shapes of the expression in the order of its text, to move or replace them.
+    /// Returns the shapes of the expression in the order of its text, to move or replace them; prisms are none of these.
     ///
     /// ```
     /// # use rara_scene as rara;
@@ -70,6 +83,7 @@ impl Expression {
     pub fn shapes_mut(&mut self) -> Vec<&mut Shape> {
         match self {
             Self::Shape(shape) => vec![shape],
+            Self::Prism(_) => Vec::new(),
             Self::All(all) | Self::Any(all) => all.iter_mut().flat_map(Self::shapes_mut).collect(),
             Self::Not(expression) => expression.shapes_mut(),
         }
@@ -79,6 +93,7 @@ impl Expression {
     pub fn shapes(&self) -> Vec<Shape> {
         match self {
             Self::Shape(shape) => vec![*shape],
+            Self::Prism(_) => Vec::new(),
             Self::All(all) | Self::Any(all) => all.iter().flat_map(Self::shapes).collect(),
             Self::Not(expression) => expression.shapes(),
         }
@@ -105,6 +120,7 @@ impl fmt::Display for Expression {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (word, operands) = match self {
             Self::Shape(shape) => return shape.fmt(f),
+            Self::Prism(prism) => return write!(f, "{POLYGON}:{prism}"),
             Self::All(all) => ("all", all.as_slice()),
             Self::Any(any) => ("any", any.as_slice()),
             Self::Not(expression) => ("not", slice::from_ref(&**expression)),
@@ -113,7 +129,7 @@ impl fmt::Display for Expression {
     }
 }
 
-impl TextReader<'_> {
+impl<'a> TextReader<'a> {
     fn expression(&mut self) -> Result<Expression> {
         if self.takes("!") {
             return Ok(match self.deeper(Self::expression)? {
@@ -129,9 +145,15 @@ impl TextReader<'_> {
                 Err(_) => self.refuse("not(...) has one operand; put several into any(...)"),
             },
             "" => self.refuse("a shape, all(...), any(...) or not(...) is missing"),
+            POLYGON => {
+                let text = self.numbers();
+                let prism =
+                    |text: &str| Prism::read(text.split_once(':').map_or("", |(_, rest)| rest));
+                self.part(text, prism).map(Expression::Prism)
+            }
             name if kind(name).is_some() => self.shape(),
             name => self.refuse(format!(
-                "'{}' is neither a shape ({}) nor all, any or not",
+                "'{}' is neither a shape ({}, {POLYGON}) nor all, any or not",
                 shortened(name),
                 names()
             )),
@@ -144,15 +166,19 @@ impl TextReader<'_> {
         })
     }
 
-    /// A shape, whose numbers end where no number follows a comma.
-    fn shape(&mut self) -> Result<Expression> {
+    /// The text of a shape, whose numbers end where no number follows a comma.
+    fn numbers(&self) -> &'a str {
         let rest = self.rest;
         let begins_number = |c: char| c.is_ascii_digit() || "+-.".contains(c);
         let ends = |&(at, sign): &(usize, &str)| {
             sign == ")" || !rest[at + 1..].trim_start().starts_with(begins_number)
         };
         let end = rest.match_indices([',', ')']).find(ends);
-        let shape = &rest[..end.map_or(rest.len(), |(at, _)| at)];
+        &rest[..end.map_or(rest.len(), |(at, _)| at)]
+    }
+
+    fn shape(&mut self) -> Result<Expression> {
+        let shape = self.numbers();
         let bounds = self.bounds;
         let (shape, at_shares) = self.part(shape, |text| Shape::read(text, bounds.as_ref()))?;
         self.has_shares |= at_shares;

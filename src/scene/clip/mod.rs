@@ -10,6 +10,7 @@ mod placed;
 mod plane;
 #[doc(hidden)]
 pub mod postfix;
+mod prism;
 mod quadric;
 mod shape;
 mod shape_text;
@@ -25,6 +26,7 @@ pub use clip_file::{NamedClip, clips_from_json, clips_to_json, load_clips};
 pub use expression::Expression;
 pub use parameter::Parameter;
 pub use plane::Plane;
+pub use prism::Prism;
 pub use quadric::Quadric;
 pub use shape::Shape;
 #[doc(hidden)]

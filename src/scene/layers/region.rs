@@ -26,11 +26,14 @@ pub enum Region<T = Expression> {
 }
 
 impl Region {
-    /// The text of one shape.
+    /// The text of one shape, or of a prism.
     ///
     /// # Errors
     /// [`Error::Invalid`](rara_base::error::Error::Invalid) for other text.
     pub fn shape(text: &str) -> Result<Self> {
+        if let Some(prism) = Expression::prism(text) {
+            return prism.map(Self::Fixed);
+        }
         let (shape, at_shares) = Shape::read(text, Some(&EXAMPLE))?;
         Ok(Self::new(text, Expression::Shape(shape), at_shares))
     }

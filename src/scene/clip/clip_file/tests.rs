@@ -12,6 +12,7 @@ fn clips_round_trip() {
         "any(capsule:0,0,0,0,1,0,0.1, !cylinder:0,0,0,0,1,0,0.1, slab:1,0,0,0.25,0.5)",
         "ellipsoid:0,0,0,1,2,3,0.5,0.5,0.5,0.5",
         "!box:1,2,3,1,1,1,0,1,0,0",
+        "all(polygon:z=-1..2.5;0,0;2,0;2,1|1.5,0.25;1.75,0.25;1.75,0.5, !polygon:x;0,0;1,0;1,1, sphere:0,0,0,1)",
     ];
     let clips: Vec<NamedClip> = texts
         .iter()

@@ -17,6 +17,12 @@ fn random(random: &mut Random, depth: u32) -> Expression {
         _ => {
             let [x, y, z] = [(); 3].map(|()| 2.0 * random.unit() - 1.0);
             let text = match pick {
+                1 if z > 0.0 => {
+                    // A dart, which its last corner dents.
+                    let corners = format!("{x},{y};{},{y};{},{}", x + 1.0, x + 0.5, y + 1.5);
+                    let text = format!("z={}..{z};{corners};{},{}", z - 1.0, x + 0.4, y + 0.4);
+                    return Expression::Prism(Prism::read(&text).unwrap());
+                }
                 0 => format!("sphere:{x},{y},{z},{}", 0.3 + random.unit()),
                 _ => format!("!plane:{x},{y},{z},{}", random.unit() - 0.5),
             };
@@ -28,6 +34,7 @@ fn random(random: &mut Random, depth: u32) -> Expression {
 fn keeps(expression: &Expression, point: DVec3) -> bool {
     match expression {
         Expression::Shape(shape) => shape.clip().keeps(point),
+        Expression::Prism(prism) => prism.clip().keeps(point),
         Expression::All(all) => all.iter().all(|e| keeps(e, point)),
         Expression::Any(any) => any.iter().any(|e| keeps(e, point)),
         Expression::Not(expression) => !keeps(expression, point),

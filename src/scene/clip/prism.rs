@@ -1,0 +1,460 @@
+//! Prisms over polygons: regions whose cross-section along an axis is a simple polygon with holes.
+
+use std::fmt;
+
+use glam::{DVec2, DVec3};
+
+use super::{Clip, ClipOp, Plane};
+use crate::axis::Axis;
+use crate::text_reader::{joined, number};
+use rara_base::error::{Error, Result};
+
+/// The points whose place across an axis is inside a polygon, and outside of all its holes: without end along the axis, or between
+/// two heights. It parses from the text that follows `polygon:`, as `z;0,0;2,0;2,1;0,1` or, with heights and a hole,
+/// `z=-1..4;0,0;9,0;9,9;0,9|3,3;6,3;6,6`. The corners are (x, y) across z, (x, z) across y and (y, z) across x, world units.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Prism {
+    /// The axis, as it was written.
+    name: String,
+    along: DVec3,
+    /// The polygon and its holes, each as its corners.
+    rings: Vec<Vec<DVec2>>,
+    heights: Option<[f64; 2]>,
+    /// What all of it keeps.
+    clip: Clip,
+}
+
+impl Prism {
+    /// How it is written as text, and what that means: a sentence, as [`Solid::usages`](super::Solid::usages) has them.
+    pub const USAGE: &str = "polygon:AXIS;u,v;u,v;... is the prism along an axis over a polygon with these corners, between two \
+                             heights if written polygon:z=0..2;..., and a | begins the corners of a hole.";
+
+    /// Makes the prism of a polygon and its holes across an axis, one of `x`, `y` and `z` or of their anatomical names. A ring may
+    /// repeat its first corner at its end.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] for another axis, for a ring of fewer than three corners or without an area, for rings whose edges cross or
+    /// touch, for a hole that is not in the polygon, and where the first height is not below the second.
+    pub fn new(axis: &str, rings: &[Vec<DVec2>], heights: Option<[f64; 2]>) -> Result<Self> {
+        let invalid = |what: String| Err(Error::Invalid(format!("a polygon {what}")));
+        let Some(along) = Axis::parse(axis)
+            .filter(|_| !axis.contains('!'))
+            .map(|axis| axis.along)
+        else {
+            return invalid(format!(
+                "across '{axis}': use one of the axes x, y, z, sagittal, coronal and axial"
+            ));
+        };
+        if let Some([low, high]) = heights
+            && !(low < high)
+        {
+            return invalid(format!(
+                "from {low} to {high}: the first height is below the second"
+            ));
+        }
+        let cleaned: Vec<Vec<DVec2>> = rings.iter().map(|ring| without_repeats(ring)).collect();
+        let Some(outer) = cleaned.first() else {
+            return invalid("needs corners, as in polygon:z;0,0;2,0;2,1".into());
+        };
+        for (number, ring) in cleaned.iter().enumerate() {
+            if ring.len() < 3 || ring.len() == 3 && area(ring) == 0.0 {
+                return invalid(format!(
+                    "needs three corners that are not in line; {} has fewer",
+                    called(number)
+                ));
+            }
+        }
+        if let Some([a, b]) = crossing(&cleaned) {
+            return invalid(format!(
+                "has edges that cross or touch: that {} and that {}; move a corner of one of them",
+                edge_text(&cleaned, a),
+                edge_text(&cleaned, b)
+            ));
+        }
+        let is_inside = |ring: &[DVec2]| winds_around(outer, ring[0]);
+        if let Some(number) = (1..cleaned.len()).find(|&number| !is_inside(&cleaned[number])) {
+            return invalid(format!(
+                "has a hole that is not inside of it: {}",
+                called(number)
+            ));
+        }
+        let mut prism = Self {
+            name: axis.into(),
+            along,
+            rings: rings.to_vec(),
+            heights,
+            clip: Clip::default(),
+        };
+        prism.clip = prism.lowered(&cleaned)?;
+        prism.clip.check()?;
+        Ok(prism)
+    }
+
+    /// The region that it keeps.
+    pub fn clip(&self) -> Clip {
+        self.clip.clone()
+    }
+
+    /// The axis, as it was written.
+    pub fn axis(&self) -> &str {
+        &self.name
+    }
+
+    /// The polygon and its holes, each as its corners, world units.
+    pub fn rings(&self) -> &[Vec<DVec2>] {
+        &self.rings
+    }
+
+    /// The heights along the axis between which it lies, world units, if it ends.
+    pub fn heights(&self) -> Option<[f64; 2]> {
+        self.heights
+    }
+
+    /// The prism at a share of the way to another one of as many corners along the same axis, if that is one.
+    pub(super) fn between(&self, other: &Self, share: f64) -> Option<Result<Self>> {
+        let counts = |prism: &Self| prism.rings.iter().map(Vec::len).collect::<Vec<_>>();
+        if self.along != other.along || counts(self) != counts(other) {
+            return None;
+        }
+        let mix = |a: f64, b: f64| a + (b - a) * share;
+        let heights = match (self.heights, other.heights) {
+            (Some(a), Some(b)) => Some([mix(a[0], b[0]), mix(a[1], b[1])]),
+            (None, None) => None,
+            _ => return None,
+        };
+        let pairs = self.rings.iter().zip(&other.rings);
+        let ring = |(a, b): (&Vec<DVec2>, &Vec<DVec2>)| {
+            a.iter().zip(b).map(|(a, b)| a.lerp(*b, share)).collect()
+        };
+        let rings: Vec<Vec<DVec2>> = pairs.map(ring).collect();
+        Some(Self::new(&self.name, &rings, heights))
+    }
+
+    /// Reads the text that follows `polygon:`.
+    pub(super) fn read(text: &str) -> Result<Self> {
+        let (head, corners) = text.split_once(';').unwrap_or((text, ""));
+        let (axis, heights) = match head.split_once('=') {
+            None => (head, None),
+            Some((axis, heights)) => {
+                let (low, high) = heights.split_once("..").ok_or_else(|| {
+                    Error::Invalid(format!(
+                        "'{heights}' is not two heights; give them as in polygon:z=0..2;..."
+                    ))
+                })?;
+                (axis, Some([number(low)?, number(high)?]))
+            }
+        };
+        let corner = |text: &str| {
+            let pair = text.split_once(',').ok_or_else(|| {
+                Error::Invalid(format!(
+                    "'{text}' is not a corner; give two numbers with a comma between them, and a ; between corners"
+                ))
+            })?;
+            Ok(DVec2::new(number(pair.0)?, number(pair.1)?))
+        };
+        let ring = |text: &str| text.split(';').map(corner).collect::<Result<Vec<_>>>();
+        let rings = match corners.trim() {
+            "" => Vec::new(),
+            all => all.split('|').map(ring).collect::<Result<Vec<_>>>()?,
+        };
+        Self::new(axis.trim(), &rings, heights)
+    }
+
+    /// Two axes across the prism's own: those of a corner's numbers.
+    fn across(&self) -> [DVec3; 2] {
+        match self.along {
+            DVec3::X => [DVec3::Y, DVec3::Z],
+            DVec3::Y => [DVec3::X, DVec3::Z],
+            _ => [DVec3::X, DVec3::Y],
+        }
+    }
+
+    /// The region as planes.
+    fn lowered(&self, rings: &[Vec<DVec2>]) -> Result<Clip> {
+        let mut all = Vec::new();
+        for (number, ring) in rings.iter().enumerate() {
+            let region = self.region(&formula(ring))?;
+            all.push(match number {
+                0 => region,
+                _ => region.complement(),
+            });
+        }
+        if let Some([low, high]) = self.heights {
+            let ends = [
+                Plane::new(self.along, -low)?,
+                Plane::new(-self.along, high)?,
+            ];
+            all.push(Clip::of(ends, ClipOp::And));
+        }
+        Ok(Clip::joined(all, ClipOp::And))
+    }
+
+    fn region(&self, formula: &Formula) -> Result<Clip> {
+        Ok(match formula {
+            Formula::Edge(from, to) => {
+                let [u, v] = self.across();
+                let inward = (to - from).perp();
+                let normal = u * inward.x + v * inward.y;
+                Clip::of([Plane::new(normal, -inward.dot(*from))?], ClipOp::And)
+            }
+            Formula::Both(op, parts) => {
+                let parts = parts.iter().map(|part| self.region(part));
+                Clip::joined(parts.collect::<Result<Vec<_>>>()?, *op)
+            }
+        })
+    }
+}
+
+/// The text that follows `polygon:`.
+impl fmt::Display for Prism {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.name)?;
+        if let Some([low, high]) = self.heights {
+            write!(f, "={low}..{high}")?;
+        }
+        let ring =
+            |ring: &Vec<DVec2>| joined(ring, ";", |corner| format!("{},{}", corner.x, corner.y));
+        write!(f, ";{}", joined(&self.rings, "|", ring))
+    }
+}
+
+/// How messages call a ring.
+fn called(number: usize) -> String {
+    match number {
+        0 => "the polygon itself".into(),
+        hole => format!("hole {hole}"),
+    }
+}
+
+fn edge_text(rings: &[Vec<DVec2>], (ring, edge): (usize, usize)) -> String {
+    let [from, to] = ends(&rings[ring], edge);
+    format!("from ({}, {}) to ({}, {})", from.x, from.y, to.x, to.y)
+}
+
+/// A ring without corners that repeat the one before or that lie between their neighbours, which change nothing.
+fn without_repeats(ring: &[DVec2]) -> Vec<DVec2> {
+    let mut kept: Vec<DVec2> = Vec::new();
+    for &corner in ring {
+        if kept.last() != Some(&corner) {
+            kept.push(corner);
+        }
+    }
+    while kept.len() > 1 && kept.first() == kept.last() {
+        kept.pop();
+    }
+    let is_between = |ring: &[DVec2], at: usize| {
+        let count = ring.len();
+        let [before, after] = [ring[(at + count - 1) % count], ring[(at + 1) % count]];
+        let (a, b) = (ring[at] - before, after - ring[at]);
+        a.perp_dot(b) == 0.0 && a.dot(b) > 0.0
+    };
+    while kept.len() > 3
+        && let Some(at) = (0..kept.len()).find(|&at| is_between(&kept, at))
+    {
+        kept.remove(at);
+    }
+    kept
+}
+
+/// Twice the area, positive if the corners turn from the first axis to the second.
+fn area(ring: &[DVec2]) -> f64 {
+    let edges = (0..ring.len()).map(|edge| ends(ring, edge));
+    // Counted from a corner, so that a place far from zero costs no digits.
+    edges
+        .map(|[a, b]| (a - ring[0]).perp_dot(b - ring[0]))
+        .sum()
+}
+
+fn ends(ring: &[DVec2], edge: usize) -> [DVec2; 2] {
+    [ring[edge], ring[(edge + 1) % ring.len()]]
+}
+
+/// True when a point is inside of a ring.
+fn winds_around(ring: &[DVec2], point: DVec2) -> bool {
+    let crosses = |edge: &usize| {
+        let [a, b] = ends(ring, *edge);
+        let is_between = (a.y > point.y) != (b.y > point.y);
+        is_between && point.x < a.x + (point.y - a.y) / (b.y - a.y) * (b.x - a.x)
+    };
+    (0..ring.len()).filter(crosses).count() % 2 == 1
+}
+
+/// Two edges that cross or touch and are not neighbours, or that fold back on each other: a ring and an edge of it each.
+fn crossing(rings: &[Vec<DVec2>]) -> Option<[(usize, usize); 2]> {
+    let of_ring = |number: usize| (0..rings[number].len()).map(move |edge| (number, edge));
+    let mut edges: Vec<(usize, usize)> = (0..rings.len()).flat_map(of_ring).collect();
+    let span = |&(ring, edge): &(usize, usize)| {
+        let [a, b] = ends(&rings[ring], edge);
+        [a.x.min(b.x), a.x.max(b.x)]
+    };
+    edges.sort_by(|a, b| span(a)[0].total_cmp(&span(b)[0]));
+    for (at, a) in edges.iter().enumerate() {
+        let last = span(a)[1];
+        for b in edges[at + 1..].iter().take_while(|b| span(b)[0] <= last) {
+            let count = rings[a.0].len();
+            let are_neighbours = a.0 == b.0 && [1, count - 1].contains(&a.1.abs_diff(b.1));
+            let [one, other] = [a, b].map(|(ring, edge)| ends(&rings[*ring], *edge));
+            let meet = match are_neighbours {
+                true => fold(one, other),
+                false => touch(one, other),
+            };
+            if meet {
+                return Some([*a, *b]);
+            }
+        }
+    }
+    None
+}
+
+/// True when two neighbours lie on each other.
+fn fold([a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> bool {
+    let (along, back) = if b == c {
+        (b - a, d - c)
+    } else {
+        (a - b, c - d)
+    };
+    along.perp_dot(back) == 0.0 && along.dot(back) < 0.0
+}
+
+/// True when two edges have a point in common.
+fn touch([a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> bool {
+    let side = |from: DVec2, to: DVec2, point: DVec2| (to - from).perp_dot(point - from);
+    let sides = [side(a, b, c), side(a, b, d), side(c, d, a), side(c, d, b)];
+    if sides[0] * sides[1] < 0.0 && sides[2] * sides[3] < 0.0 {
+        return true;
+    }
+    let is_on = |from: DVec2, to: DVec2, point: DVec2| {
+        point.cmpge(from.min(to)).all() && point.cmple(from.max(to)).all()
+    };
+    (sides[0] == 0.0 && is_on(a, b, c))
+        || (sides[1] == 0.0 && is_on(a, b, d))
+        || (sides[2] == 0.0 && is_on(c, d, a))
+        || (sides[3] == 0.0 && is_on(c, d, b))
+}
+
+/// Which half-planes a polygon is made of: the left sides of its edges, each of which appears once (Dobkin, Guibas, Hershberger
+/// and Snoeyink 1988).
+#[derive(Debug)]
+enum Formula {
+    /// What is left of an edge.
+    Edge(DVec2, DVec2),
+    /// What all of them keep, or any.
+    Both(ClipOp, Vec<Formula>),
+}
+
+/// The formula of a simple polygon. Its first and last corner along an axis divide it into two chains. The edges at a chain's ends
+/// go on without end, and the polygon is what is left of both.
+fn formula(ring: &[DVec2]) -> Formula {
+    let mut ring = ring.to_vec();
+    if area(&ring) < 0.0 {
+        ring.reverse();
+    }
+    let order = |a: &usize, b: &usize| {
+        let [a, b] = [ring[*a], ring[*b]];
+        a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y))
+    };
+    let first = (0..ring.len()).min_by(order).unwrap_or(0);
+    ring.rotate_left(first);
+    let order = |a: &usize, b: &usize| {
+        let [a, b] = [ring[*a], ring[*b]];
+        a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y))
+    };
+    let last = (0..ring.len()).max_by(order).unwrap_or(0);
+    let back = [&ring[last..], &ring[..1]].concat();
+    let chains = [of_chain(&ring[..=last]), of_chain(&back)];
+    Formula::Both(ClipOp::And, chains.into())
+}
+
+/// The formula of what is left of a chain whose first and last edge go on without end. A corner that no other part of the chain goes
+/// beyond divides it: its two parts keep together what both keep where it turns left, and what either does where it turns right.
+fn of_chain(chain: &[DVec2]) -> Formula {
+    let mut parts: Vec<(usize, usize)> = vec![(0, chain.len() - 1)];
+    let mut nodes = Vec::new();
+    // Parts whose formula is made of those behind them; a recursion could be as deep as the chain is long.
+    let mut at = 0;
+    while at < parts.len() {
+        let (begin, end) = parts[at];
+        let split = (end > begin + 1).then(|| begin + outermost(&chain[begin..=end]));
+        nodes.push(split.map(|corner| {
+            parts.extend([(begin, corner), (corner, end)]);
+            (corner, parts.len() - 2)
+        }));
+        at += 1;
+    }
+    let mut made: Vec<Option<Formula>> = Vec::new();
+    made.resize_with(parts.len(), || None);
+    for (at, node) in nodes.iter().enumerate().rev() {
+        made[at] = Some(match *node {
+            None => Formula::Edge(chain[parts[at].0], chain[parts[at].1]),
+            Some((corner, first)) => {
+                let [before, after] = [
+                    chain[corner] - chain[corner - 1],
+                    chain[corner + 1] - chain[corner],
+                ];
+                let op = match before.perp_dot(after) > 0.0 {
+                    true => ClipOp::And,
+                    false => ClipOp::Or,
+                };
+                let mut parts = Vec::new();
+                for part in [made[first].take(), made[first + 1].take()]
+                    .into_iter()
+                    .flatten()
+                {
+                    match part {
+                        Formula::Both(of, inner) if of == op => parts.extend(inner),
+                        other => parts.push(other),
+                    }
+                }
+                Formula::Both(op, parts)
+            }
+        });
+    }
+    made.swap_remove(0)
+        .unwrap_or(Formula::Both(ClipOp::And, Vec::new()))
+}
+
+/// The number of a corner between the ends of a chain that is farther in some direction than all else, also than where its ends go on
+/// to.
+fn outermost(chain: &[DVec2]) -> usize {
+    let last = chain.len() - 1;
+    let rays = [
+        (chain[0] - chain[1]).normalize_or_zero(),
+        (chain[last] - chain[last - 1]).normalize_or_zero(),
+    ];
+    let farthest = |direction: DVec2, aside: DVec2| {
+        let key = |at: &usize| {
+            [
+                direction.dot(chain[*at] - chain[1]),
+                aside.dot(chain[*at] - chain[1]),
+            ]
+        };
+        (1..last)
+            .max_by(|a, b| {
+                let [a, b] = [key(a), key(b)];
+                a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1]))
+            })
+            .unwrap_or(1)
+    };
+    let between = rays[0] + rays[1];
+    if between.length() > 1e-9 {
+        let direction = -between.normalize();
+        return farthest(direction, direction.perp());
+    }
+    // The ends go on in opposite directions: the chain may go beyond both on either side.
+    let level = |direction: DVec2, at: usize| direction.dot(chain[at] - chain[1]);
+    for direction in [rays[0].perp(), -rays[0].perp()] {
+        let corner = farthest(direction, -rays[0]);
+        if level(direction, corner) > level(direction, 1).max(level(direction, last - 1)) {
+            return corner;
+        }
+    }
+    // It lies between them: the line of one end bounds it.
+    let direction = rays[0].perp();
+    match level(direction, 1) >= level(direction, last - 1) {
+        true => farthest(direction, -rays[0]),
+        false => farthest(direction, -rays[1]),
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -54,7 +54,7 @@ impl Sheet {
         ink::text(
             &mut words,
             [2.0 * f64::from(scale); 2],
-            label,
+            &short(label),
             (font, scale.into()),
             INK,
         );
@@ -66,6 +66,20 @@ impl Sheet {
     pub(super) fn picture(&self) -> &Picture {
         &self.picture
     }
+}
+
+/// A label whose numbers have four decimals at most.
+fn short(label: &str) -> String {
+    let mut decimals = None;
+    let fits = |letter: &char| {
+        decimals = match (decimals, letter) {
+            (_, '.') => Some(0),
+            (Some(before), '0'..='9') => Some(before + 1),
+            _ => None,
+        };
+        decimals.is_none_or(|count| count <= 4)
+    };
+    label.chars().filter(fits).collect()
 }
 
 /// The letters over pictures of a width: their font, and how many pixels its dots have.
@@ -104,6 +118,13 @@ mod tests {
         for mode in Mode::ALL {
             assert!(mode.name().chars().all(|letter| letter.is_ascii_graphic()));
         }
+    }
+
+    #[test]
+    fn numbers_in_labels_are_short() {
+        assert_eq!(short("axial=0.28571428571428575"), "axial=0.2857");
+        assert_eq!(short("z@-12.123456 of 3.5.ply"), "z@-12.1234 of 3.5.ply");
+        assert_eq!(short("2.7182818x2.7182818"), "2.7182x2.7182");
     }
 
     #[test]

@@ -35,14 +35,14 @@ pub struct ClipArgs {
     /// The file is a list. Each element is a plane, such as {"normal":[x,y,z],"d":d}, or an expression as a tree, such as
     /// {"clip":{"all":[...]}}, and may have a "name". --save-clip writes such a file. FILE:NAME takes the clips with this name,
     /// or the clip with this number (from 0), and FILE:* takes all clips. If several clips have names, :NAME or :* is needed.
-    /// An element with "layer" cuts only this layer. rara takes these elements too, unless NAME names one of them.
+    /// An element with "layer" cuts only this layer. Such elements are taken in any case, unless NAME is the name of one of them.
     #[arg(long, value_name = "FILE[:NAME]")]
     clip_file: Vec<String>,
     /// Write the clip to a JSON file for --clip-file
     ///
     /// The plane of a --section is not written. Shares such as x=40% are written as coordinates. rara view writes the clip
     /// that it shows when the window closes.
-    #[arg(long, value_name = "FILE", value_parser = values::one_file())]
+    #[arg(long, value_name = "FILE", value_parser = values::json_file())]
     save_clip: Option<PathBuf>,
     /// Keep what is inside all shapes (and), or inside at least one of them (or)
     #[arg(long, value_name = "OP", value_parser = values::named::<ClipOp>(), default_value = ClipOp::default().name())]

@@ -34,8 +34,8 @@ The extension of OUT chooses the format: {}. Several scenes are joined into one 
 converted by itself, into a file with the scene's name in place of {{}}. If a list of layers places or fades layers, their
 Gaussians are written as placed and faded. Hidden layers are left out.
 
---clip and the other clip flags keep or drop whole Gaussians by their centres, in the coordinates of the scene that was read;
-`rara bake` cuts Gaussians. After the clip, the scene is scaled, then turned, then moved.", Format::endings()))]
+--clip and the other clip flags keep or drop whole Gaussians by their centres; `rara bake` cuts Gaussians. --place acts before
+the clip. After it, the scene is scaled by --scale, then turned by --rotate, then moved by --move.", Format::endings()))]
 pub(super) struct Convert {
     /// File to write; its extension chooses the format; {} becomes the name of each SCENE
     #[arg(short, long, value_name = "OUT")]
@@ -45,9 +45,9 @@ pub(super) struct Convert {
     min_opacity: Option<f32>,
     /// Leave out floaters: Gaussians in clusters of fewer than N
     ///
-    /// Gaussians that touch each other, one by the next, are a cluster of their layer. Two touch if their ellipsoids of two
-    /// standard deviations do. What --clip and --min-opacity leave out joins nothing. To see the floaters first, draw the scene
-    /// with --select 'floaters=cluster_size<N'.
+    /// Gaussians of a layer that a chain of touching Gaussians connects are a cluster. Two Gaussians touch if their ellipsoids of
+    /// two standard deviations do. Gaussians that --clip or --min-opacity removes do not connect others. To see the floaters
+    /// first, draw the scene with --select 'floaters=cluster_size<N'.
     #[arg(long, value_name = "N")]
     min_cluster: Option<u32>,
     /// Leave out all but the largest cluster of each layer
@@ -360,7 +360,7 @@ fn lost_origin(format: Format, gaussians: &Gaussians) -> Option<String> {
         _ if [x, y, z] == [0.0; 3] => None,
         Format::Ply | Format::Gltf => None,
         _ => Some(format!(
-            "{format} holds centres near zero only, so they are written as counted from ({x}, {y}, {z}); draw the file with \
+            "{format} stores precise centres only near zero, so they are written relative to ({x}, {y}, {z}); draw the file with \
              --place move:{x},{y},{z}"
         )),
     }

@@ -25,12 +25,12 @@ rara_base::named! {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Sections")]
 pub(super) struct LabelArgs {
-    /// Draw a bar of a round length; --scale-bar=mm names the unit
+    /// Draw a scale bar whose length is a round number; --scale-bar=mm names the unit
     ///
     /// The number at the bar is in world units. For sections and for cameras without perspective.
     #[arg(long, value_name = "UNIT", num_args = 0..=1, require_equals = true, default_missing_value = "")]
     scale_bar: Option<String>,
-    /// Write at the edges which direction is there
+    /// Label the edges of the picture with directions
     ///
     /// For sections and for cameras without perspective.
     #[arg(long, value_name = "SYSTEM", value_parser = values::named::<Letters>())]

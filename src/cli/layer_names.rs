@@ -47,7 +47,7 @@ pub(super) fn no_layer<'a>(
 ) -> Failure {
     let names: Vec<_> = names.collect();
     Failure::Usage(format!(
-        "{flag}: no layer is called '{name}'; there are {}{}",
+        "{flag}: no layer is called '{name}'; the layers are {}{}",
         names.join(", "),
         values::meant(name, names.iter().copied())
     ))

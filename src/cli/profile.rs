@@ -18,7 +18,7 @@ pub(super) struct ProfileArgs {
     /// Write a trace for ui.perfetto.dev or chrome://tracing
     ///
     /// It shows how long each step takes on the processor and on the device.
-    #[arg(long, value_name = "FILE", value_parser = values::one_file())]
+    #[arg(long, value_name = "FILE", value_parser = values::json_file())]
     trace: Option<PathBuf>,
     /// Count the work of each stage with Vulkan's pipeline statistics, if the device has them
     ///

@@ -290,8 +290,8 @@ impl Render {
                 let moving = self.moving.meant(None, pace)?;
                 if moving.is_some() && !self.path.moves() {
                     return Err(Failure::Usage(
-                        "--from and --to move a clip while --path moves the camera: give a path, or let the clip move alone by \
-                         rara sweep"
+                        "--from and --to move a clip while --path moves the camera: give --path, or use rara sweep, which moves \
+                         the clip alone"
                             .into(),
                     ));
                 }

@@ -24,7 +24,7 @@ pub(super) struct SaveCameraArgs {
     ///
     /// --camera reads the file and draws the same picture. If there are several pictures, the file has a list of cameras with
     /// names, which --cameras and --view can use.
-    #[arg(long, value_name = "FILE", value_parser = values::one_file(), help_heading = HEADING)]
+    #[arg(long, value_name = "FILE", value_parser = values::json_file(), help_heading = HEADING)]
     save_camera: Option<PathBuf>,
 }
 

@@ -41,7 +41,7 @@ pub struct SceneArgs {
     ///
     /// PREDICATE compares a number of each splat by <, <=, >, >=, = or !=, as in opacity>0.5. The number may be opacity (from
     /// 0 to 1), size (the largest standard deviation), cluster_size (the
-    /// number of splats in its cluster: those that touch each other, one by the next), red, green or blue (the colour of degree 0, where 1 is full), or a
+    /// number of splats in its cluster, which are connected by a chain of touching splats), red, green or blue (the colour of degree 0, where 1 is full), or a
     /// property of the file by its name. If this name is also a word of predicates, such as size, write property(NAME).
     ///
     /// 'label in 3,4,7..9' is true if the number is in the list; 7..9 includes 7, 9 and everything between.

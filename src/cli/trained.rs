@@ -153,18 +153,18 @@ pub(super) fn check_alike(loaded: &SceneLayers) -> Result<(), Failure> {
     let others = of(other);
     if own.linear != others.linear {
         return Err(Failure::Usage(format!(
-            "the colours of '{}' and '{}' are not both linear light, and a file of both can say only one of it: write them to \
+            "the colours of '{}' and '{}' are not both linear light, and one file can have only one of these: write them to \
              a file each",
             first.name, other.name
         )));
     }
     let (how, flag) = match (own.antialiased, others.antialiased) {
         (true, false) => (
-            ["antialiased", "was not"].map(String::from),
+            ["with antialiasing", "without"].map(String::from),
             "--antialiasing on or off",
         ),
         (false, true) => (
-            ["as it is", "antialiased"].map(String::from),
+            ["without antialiasing", "with it"].map(String::from),
             "--antialiasing on or off",
         ),
         _ => (
@@ -173,8 +173,8 @@ pub(super) fn check_alike(loaded: &SceneLayers) -> Result<(), Failure> {
         ),
     };
     Err(Failure::Usage(format!(
-        "the layer '{}' was trained {} and '{}' {}, and a file of both can say only one of it: write them to a file each, or \
-         say {flag} for all",
+        "the layer '{}' was trained {} and '{}' {}, and one file can have only one of these: write them to a file each, or \
+         give {flag} for all",
         first.name, how[0], other.name, how[1],
     )))
 }
@@ -209,7 +209,7 @@ pub(super) fn lost(format: Format, training: Training) -> Option<String> {
              {training}, and other programs draw it {usual}"
         )),
         (false, _) => Some(format!(
-            "{format} cannot say that the scene was trained {training}; draw the file with {}",
+            "{format} does not store how the scene was trained; draw the file with {}",
             flags.join(" ")
         )),
     }

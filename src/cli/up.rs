@@ -40,7 +40,7 @@ pub(super) fn up_of(chosen: Option<DVec3>, scenes: &[PathBuf]) -> (DVec3, Option
         let ending = ending.unwrap_or_default().to_ascii_lowercase();
         ["spz", "glb", "gltf"].contains(&&ending[..])
     };
-    let note = "note: up is -y; --up y turns a picture that is upside down, --up z one that lies on its side";
+    let note = "note: up is -y; if the picture is upside down, give --up y; if it lies on its side, --up z";
     let is_known = scenes.iter().all(says_what_is_up);
     (UP, (!is_known).then(|| note.into()))
 }

@@ -1,6 +1,7 @@
 //! The values that flags take: their parsers, and their texts.
 
 use std::ffi::OsString;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
@@ -138,6 +139,21 @@ pub fn one_file() -> impl TypedValueParser<Value = PathBuf> {
     OsStringValueParser::new().try_map(|name| match is_several(Path::new(&name)) {
         false => Ok(PathBuf::from(name)),
         true => Err("this is written once, and braces stand for several names: leave them out"),
+    })
+}
+
+/// The file that JSON is written to; one that is there and holds something else is not taken for it.
+pub(super) fn json_file() -> impl TypedValueParser<Value = PathBuf> {
+    one_file().try_map(|path| {
+        let mut begin = [0; 64];
+        let file = std::fs::File::open(&path).and_then(|mut file| file.read(&mut begin));
+        let first = begin.iter().find(|byte| !byte.is_ascii_whitespace());
+        match (file, first) {
+            (Ok(1..), Some(first)) if !b"{[".contains(first) && path.is_file() => {
+                Err("this file holds something else than JSON: name another one")
+            }
+            _ => Ok(path),
+        }
     })
 }
 

@@ -202,7 +202,7 @@ pub(super) fn picked(
     picked.or_else(range).ok_or_else(|| {
         let meant = values::meant(wanted, names.iter().copied());
         Failure::Usage(format!(
-            "{flag} {wanted}: {} has {}, and none of that number (from 0) or name{meant}",
+            "{flag} {wanted}: {} has {}, counted from 0, and none is called so{meant}",
             path.display(),
             output::counted(names.len() as u64, "camera")
         ))

@@ -45,7 +45,7 @@ pub(super) fn raster(
         }
         _ if needs_tiles && !can_tile => {
             return Err(Error::Invalid(format!(
-                "only tiles can draw Show::{:?}; use Raster::Auto or Raster::Tiles, and make the host's depth readable",
+                "only tiles can draw Show::{:?}; use Raster::Auto or Raster::Tiles, and a depth of the host's that is readable, if there is one",
                 settings.show
             )));
         }

@@ -34,11 +34,19 @@ impl Placement {
     /// [`Error::Invalid`] for numbers that are not finite, a scale that is not above zero and a rotation of zero.
     pub fn new(position: DVec3, rotation: DQuat, scale: f64) -> Result<Self> {
         let length = rotation.length();
-        let is_proper = position.is_finite() && scale.is_finite() && scale > 0.0;
-        if !(is_proper && length.is_finite() && length > 0.0) {
-            return Err(Error::Invalid(
-                "a scene's placement needs finite numbers, a scale above zero and a rotation that is not zero".into(),
-            ));
+        let wrong = match () {
+            () if !position.is_finite() => Some("its position needs finite numbers"),
+            () if !(scale.is_finite() && scale > 0.0) => {
+                Some("its scale has to be finite and above zero")
+            }
+            () if !length.is_finite() => Some("its rotation needs finite numbers"),
+            () if length == 0.0 => Some("its rotation cannot be zero"),
+            () => None,
+        };
+        if let Some(wrong) = wrong {
+            return Err(Error::Invalid(format!(
+                "a scene cannot be placed so: {wrong}"
+            )));
         }
         Ok(Self {
             position,

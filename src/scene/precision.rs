@@ -80,7 +80,7 @@ settings! {
     #[derive(Debug, Clone, Copy, PartialEq)]
     #[non_exhaustive]
     pub struct Precision {
-        /// Format of the target's channels: 8 bits, 16-bit floats or 32-bit floats.
+        /// Format in which a picture is blended: 8 bits, 16-bit floats or 32-bit floats a channel.
         pub target: TargetFormat as "target-format"(Precision, "FORMAT"),
         /// How spherical harmonics are stored on the device.
         ///
@@ -93,8 +93,8 @@ settings! {
         pub phi: PhiForm as "phi"(Precision, "FORM"),
         /// How many bits of a depth the sort compares at most, 8 to 32.
         ///
-        /// Each pass of the sort compares 8 bits. The bits are counted from those of the smallest depth that the bounds of the
-        /// scene allow, so 24 bits are exact unless the largest depth is more than four times the smallest.
+        /// Each pass of the sort compares 8 bits. 24 bits are exact if the largest depth in the
+        /// scene is at most four times the smallest.
         pub key_bits: u32 as "key-bits"(Precision, "N", |n| (8..=32).contains(n), "a number from 8 to 32"),
         /// Mode exact: the ratio sigma/depth above which a splat's weight is exact in perspective.
         ///

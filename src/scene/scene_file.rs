@@ -38,7 +38,7 @@ impl SceneFile {
         let origin = self.gaussians.origin();
         if origin != DVec3::ZERO {
             self.report.note(format!(
-                "counted the centres from ({}, {}, {}), which keeps their digits",
+                "stored the centres relative to ({}, {}, {}), which keeps their digits",
                 origin.x, origin.y, origin.z
             ));
         }

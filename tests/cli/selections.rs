@@ -197,7 +197,7 @@ fn selections_take_what_others_leave_and_go_by_layers() {
         (
             "skin/strong=opacity>1",
             2,
-            "no layer is called 'skin'; there are outer, inner",
+            "no layer is called 'skin'; the layers are outer, inner",
         ),
         (
             "strong=labl=3",

@@ -153,7 +153,7 @@ fn what_was_trained_antialiased_is_drawn_so() {
     refused(
         &line(&here, &words),
         2,
-        "'smooth' was trained antialiased and 'plain' was not",
+        "'smooth' was trained with antialiasing and 'plain' without",
     );
     done(line(&here, &format!("{words} --antialiasing on")));
     refused(
@@ -165,7 +165,11 @@ fn what_was_trained_antialiased_is_drawn_so() {
         "'smooth' was trained with a low-pass of 0.3 px^2 and 'plain' with a low-pass of 0.1",
     );
     let words = format!("bake {both} -o @/baked.ply --clip plane:1,0,0,0 --views 0");
-    refused(&line(&here, &words), 2, "'smooth' was trained antialiased");
+    refused(
+        &line(&here, &words),
+        2,
+        "'smooth' was trained with antialiasing",
+    );
     done(line(
         &here,
         "bake @/smooth.ply -o @/baked.ply --clip plane:1,0,0,0 --views 0",
@@ -242,7 +246,10 @@ fn up_is_as_in_the_cameras_beside_the_scene() {
     // Without cameras -y is up, and a note says so of formats that do not say it themselves.
     let words = words.replace("@/trained", "@/few.ply");
     let printed = stderr(&done(line(&here, &words)));
-    assert!(printed.contains("up is -y; --up y turns"), "{printed}");
+    assert!(
+        printed.contains("up is -y; if the picture is upside down, give --up y"),
+        "{printed}"
+    );
     let ply = picture();
     done(line(&here, &format!("{words} --up -y")));
     assert!(picture() == ply);

@@ -101,7 +101,7 @@ fn layers() {
         let mut nowhere = state;
         nowhere.placement.scale = 0.0;
         layers[1].state = &nowhere;
-        refused(&layers, "layers[1].state: a scene's placement needs");
+        refused(&layers, "layers[1].state: a scene cannot be placed so");
         let larger = RaraLayerState {
             struct_size: state_size + 8,
             ..state

@@ -199,7 +199,7 @@ fn a_host_labels_its_own_gaussians() {
             ..placement
         };
         let result = rara_gaussians_select(taken, predicate, &nowhere, &mut moved);
-        assert_fails(result, RARA_ERROR_INVALID, "a scene's placement needs");
+        assert_fails(result, RARA_ERROR_INVALID, "a scene cannot be placed so");
         for handle in [made, taken, placed] {
             rara_gaussians_destroy(handle);
         }

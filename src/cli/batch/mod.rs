@@ -116,7 +116,8 @@ impl Batch {
         if stale > 0 {
             let drawn = match self.redraw {
                 true => "drawn again",
-                false => "left as they are: --redraw draws them again",
+                false if stale == 1 => "is kept: --redraw draws it again",
+                false => "are kept: --redraw draws them again",
             };
             say(format_args!(
                 "note: {} drawn by another job, version or driver, and {drawn}",
@@ -242,7 +243,7 @@ impl Batch {
             }))?;
         } else {
             output::answer(&format!(
-                "pictures    {}\nthere       {there}, {old} of them by another job, version or driver\nmissing     {}",
+                "pictures    {}\nfinished    {there}, {old} of them by another job, version or driver\nmissing     {}",
                 ours.len(),
                 missing.len()
             ))?;
@@ -363,7 +364,7 @@ fn refuse(missing: &[&str]) -> Result<(), Failure> {
     };
     let named = missing.iter().take(NAMED).copied().collect::<Vec<_>>();
     Err(rara::Error::Invalid(format!(
-        "{} missing: {}{more}; draw the rest by the same command",
+        "{} missing: {}{more}; correct what failed, and run the same command again",
         counted_are(missing.len() as u64, "picture"),
         named.join(", ")
     ))

@@ -117,7 +117,7 @@ pub(super) fn check(command: &Command, typed: &ArgMatches) -> Result<(), Failure
             Some((what, false)) => {
                 let give = match need.rival(command, typed) {
                     Some(rival) => format!("give that in place of {rival}"),
-                    None => "give that too".into(),
+                    None => format!("give {what}"),
                 };
                 return Err(Failure::Usage(format!(
                     "{shown} changes nothing without {what}: {give}, or leave out {shown}"

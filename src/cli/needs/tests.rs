@@ -172,7 +172,7 @@ fn what_conflicts_with_a_need_does_not_meet_it() {
     for (words, says) in [
         (
             "--section z=0.5 --frames 9",
-            "without --path or --from: give that too,",
+            "without --path or --from: give --path or --from,",
         ),
         (
             "--panorama --slice",
@@ -183,7 +183,10 @@ fn what_conflicts_with_a_need_does_not_meet_it() {
             "without --section: give that in place of --panorama,",
         ),
         ("--panorama --outline 1,1,1", "without --section, --clip"),
-        ("--frames 9", "without --path or --from: give that too,"),
+        (
+            "--frames 9",
+            "without --path or --from: give --path or --from,",
+        ),
     ] {
         let words: Vec<_> = words.split(' ').collect();
         let refused = check(&render, &typed(&render, &words)).expect_err("it is refused");

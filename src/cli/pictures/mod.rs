@@ -49,14 +49,14 @@ pub(super) struct PictureArgs {
     #[arg(long, value_name = "HOW", value_parser = values::named::<PngCompression>())]
     png: Option<PngCompression>,
     /// Add this command to a file as a job for rara batch, and draw nothing
-    #[arg(long, value_name = "FILE", value_parser = values::one_file())]
+    #[arg(long, value_name = "FILE", value_parser = values::json_file())]
     save_job: Option<PathBuf>,
     #[command(flatten)]
     film: FilmArgs,
 }
 
 /// What a picture of counts is made of.
-pub(super) const COUNTS: &str = "--show count makes numbers of splats";
+pub(super) const COUNTS: &str = "--show count draws numbers of splats";
 
 /// Refuses `what` for files that do not hold it: 8 bits end at the colour white.
 pub(super) fn needs_floats(output: Option<&Path>, what: &str) -> Result<(), Failure> {

@@ -166,7 +166,7 @@ solids! {
     }
     Slab { plane: Plane, thickness: Size } => {
         name: "slab", numbers: "normal, distance, thickness",
-        usage: "slab:nx,ny,nz,d,thickness keeps the part of this side that is within a thickness of the plane.",
+        usage: "slab:nx,ny,nz,d,thickness keeps the points p with 0 <= dot(n, p) + d <= thickness.",
         region: slab(plane, thickness),
         outline: |pen| pen.slab(&plane, thickness),
     }

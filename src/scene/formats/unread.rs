@@ -65,7 +65,7 @@ const DOCUMENTS: &[(&str, &str, &str)] = &rows! {
     "world_to_camera", "a file of cameras", CAMERAS;
     "camera_path", "a file of cameras", CAMERAS;
     "totalSplats", "an LCC scene of XGRIDS", "convert it to .ply, for example with splat-transform";
-    "", "JSON, but neither the meta.json of a SOG scene nor glTF", "give the scene's own file";
+    "", "a JSON document that is neither the meta.json of a SOG scene (means, scales, quats, sh0) nor glTF", "give the scene's own file";
 };
 
 /// The refusal of a file that is of this kind.
@@ -105,7 +105,7 @@ pub(super) fn file(start: &[u8], total: u64) -> String {
         [] => ("an empty file", "get it again"),
         _ => (
             "a file of an unknown kind",
-            "convert it to one of them, for example with splat-transform",
+            "convert it to .ply, for example with splat-transform",
         ),
     };
     refusal(what, to_do)

@@ -35,7 +35,7 @@ named! {
     /// A quantity that a pixel can have beside its colour.
     #[derive(Debug, Clone, Copy, PartialEq, Eq)]
     pub enum Aov {
-        /// Channel Z: the mean depth of what the clip leaves, along the view axis, in world units; 0 in an empty pixel
+        /// Channel Z: the mean depth of what the clip keeps, along the view axis, in world units; 0 in an empty pixel
         Depth = "depth",
         /// Channels N.X, N.Y, N.Z: the mean of the splats' thinnest axes, turned towards the eye, as a unit vector in world
         /// coordinates; 0 in an empty pixel

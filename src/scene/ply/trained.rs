@@ -13,7 +13,7 @@ use rara_base::error::shortened;
 pub(super) const FILTER: &str = "filter_3D";
 
 /// The note on discs of 2DGS, which that intersects with each line of sight.
-pub(super) const DISCS: &str = "drew the discs of 2D Gaussian Splatting as flat Gaussians, which are projected, not intersected with each line of sight";
+pub(super) const DISCS: &str = "its discs of 2D Gaussian Splatting are drawn as flat Gaussians, which are projected, not intersected with each line of sight";
 /// The low-pass that Mip-Splatting trains with, px^2.
 pub(super) const LOW_PASS: f32 = 0.1;
 /// The third deviation of a disc, as a share of the smaller of the others.
@@ -135,10 +135,10 @@ pub(super) fn check(vertex: &ElementDef) -> Result<(), String> {
     let of_time: Vec<_> = names.filter(|name| is_of_time(name)).collect();
     match of_time.first() {
         Some(first) => Err(format!(
-            "its Gaussians change with time ({} and {} like it), and would all be drawn at once, those of every moment; \
-             export a .ply for each moment, and give them as scene_{{}}.ply",
+            "its Gaussians change with time (by {}, such as `{}`), and those of all moments would be drawn at once; export a .ply \
+             for each moment, and give them as scene_{{}}.ply",
+            counted(of_time.len(), "property"),
             shortened(first),
-            counted(of_time.len() - 1, "property")
         )),
         None => Ok(()),
     }

@@ -242,7 +242,7 @@ impl FromStr for Action {
             "quit" => Self::Quit,
             other => {
                 return Err(format!(
-                    "\"{other}\" is not an action; there are turn, shift, zoom, move, camera, shape, plane, drag, tilt, \
+                    "\"{other}\" is not an action; there are turn, shift, zoom, move, camera, clip, shape, plane, drag, tilt, \
                      scale, undo, layer, edit, outline, keys, numbers, drop, mode, screenshot, resize, minimise, \
                      restore, timings, flags, repeat and quit"
                 ));

@@ -89,7 +89,7 @@ fn headers_that_are_refused() {
         "velocity_x",
     ] {
         let message = refusal(&with(&format!("property float {name}\n")));
-        let says = format!("change with time ({name} and 0 properties like it)");
+        let says = format!("change with time (by 1 property, such as `{name}`)");
         assert!(
             message.contains(&says) && message.contains("for each moment"),
             "{message}"

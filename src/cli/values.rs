@@ -11,6 +11,7 @@ use glam::{DQuat, DVec3};
 use super::output::{self, STANDARD};
 use super::pattern::is_several;
 use rara_base::value::Value;
+pub(super) use rara_scene::direction;
 pub(super) use rara_scene::picture::size;
 
 /// A colour: `r,g,b`, each 0 to 1, `#rgb`, `#rrggbb` or a name that CSS has for it.
@@ -43,25 +44,6 @@ pub(super) fn turn(text: &str) -> Result<DQuat, String> {
         axis.z * sin,
         cos,
     ))
-}
-
-/// `x,y,z`, not all zero, or an axis as `y` or `-z`.
-pub(super) fn direction(text: &str) -> Result<DVec3, String> {
-    let (sign, axis) = match text.strip_prefix('-') {
-        Some(axis) => (-1.0, axis),
-        None => (1.0, text.strip_prefix('+').unwrap_or(text)),
-    };
-    match axis {
-        "x" => return Ok(sign * DVec3::X),
-        "y" => return Ok(sign * DVec3::Y),
-        "z" => return Ok(sign * DVec3::Z),
-        _ => {}
-    }
-    let vector = vec3(text)?;
-    if vector == DVec3::ZERO {
-        return Err("a direction cannot be zero".into());
-    }
-    Ok(vector)
 }
 
 /// A number that is as `expected`.

@@ -2,6 +2,8 @@
 
 use glam::DVec3;
 
+use crate::clip::numbers_of;
+
 /// An axis of the scene, and how a section across it is seen. The sides are those from which a radiologist looks at a patient
 /// in DICOM's coordinates, whose x points to the patient's left, y to the back and z to the head.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,6 +41,25 @@ impl Axis {
     }
 }
 
+/// The direction of a text: `x,y,z`, not all zero, or an axis as `y`, `+y` or `-z`.
+pub fn direction(text: &str) -> Result<DVec3, String> {
+    let (sign, axis) = match text.strip_prefix('-') {
+        Some(axis) => (-1.0, axis),
+        None => (1.0, text.strip_prefix('+').unwrap_or(text)),
+    };
+    match axis {
+        "x" => return Ok(sign * DVec3::X),
+        "y" => return Ok(sign * DVec3::Y),
+        "z" => return Ok(sign * DVec3::Z),
+        _ => {}
+    }
+    let vector = numbers_of(text).map_err(|error| error.to_string())?;
+    match DVec3::from_array(vector) {
+        DVec3::ZERO => Err("a direction cannot be zero".into()),
+        vector => Ok(vector),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -56,5 +77,16 @@ mod tests {
             assert_eq!(one.forward.dot(one.up), 0.0);
         }
         assert!(Axis::parse("w").is_none() && Axis::parse("!!x").is_none());
+    }
+
+    #[test]
+    fn directions_are_axes_or_numbers() {
+        assert!(direction("0,0,-0").is_err() && direction("w").is_err());
+        assert_eq!(direction("-z"), Ok(DVec3::NEG_Z));
+        assert_eq!(
+            (direction("y"), direction("+y")),
+            (Ok(DVec3::Y), Ok(DVec3::Y))
+        );
+        assert_eq!(direction("1, 0,-2"), Ok(DVec3::new(1.0, 0.0, -2.0)));
     }
 }

@@ -74,6 +74,8 @@ pub use setting::{Setting, SettingKind};
 pub use settings::{Decay, ExactForm, Miss, Mode, Raster, Settings, Show};
 
 pub use axis::Axis;
+#[doc(hidden)]
+pub use axis::direction;
 pub use bounds::{Bounds, extent_along};
 pub use clusters::Clusters;
 pub use cross_section::cross_section;

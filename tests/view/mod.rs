@@ -15,7 +15,8 @@ use std::time::Duration;
 
 use crate::folder::until;
 use display::Display;
-use viewer::{Viewer, apart, draws_again, folder, rara, stderr};
+use rara::Picture;
+use viewer::{Viewer, apart, done, draws_again, folder, rara, stderr};
 
 const BACKGROUND: [f32; 3] = [0.2, 0.4, 0.6];
 
@@ -118,6 +119,48 @@ fn planes_that_move_with_the_camera_are_drawn_again() {
     for name in ["start", "moved", "flat"] {
         draws_again(&folder, name, &printed);
     }
+}
+
+#[test]
+fn an_axis_is_made_up_and_stays_up() {
+    let folder = folder("up");
+    let Some(display) = Display::start(&folder) else {
+        return;
+    };
+    let words = format!("--size 160x120 {}", background());
+    let mut viewer = Viewer::start(&display, &folder, &words);
+    let start = viewer.screenshot("start");
+    viewer.say("up x\nflags");
+    let rolled = viewer.screenshot("rolled");
+    viewer.shows("the rolled view", &rolled);
+    assert!(apart(&start, &rolled) > 20.0, "another axis is up");
+    let mut client = display.client();
+    let window = client.window();
+    let (shift, x, enter) = (50, 53, 36);
+    client.press_with(window, shift, x);
+    client.press(window, enter);
+    until("x is down", || {
+        (apart(&display.corner(160, 120), &rolled) > 20.0).then_some(())
+    });
+    viewer.say("up x\nturn 30,10\ncamera reset");
+    let reset = viewer.screenshot("reset");
+    let off = apart(&rolled, &reset);
+    assert!(off <= 1.01, "the start keeps what is up: off by {off}/255");
+    viewer.say("turn 40,-20\nup 0,1,2");
+    viewer.screenshot("turned");
+    viewer.say("up z\ndrop @/scene.ply");
+    let dropped = viewer.screenshot("dropped");
+    let printed = viewer.quit();
+    for name in ["rolled", "reset", "turned", "dropped"] {
+        draws_again(&folder, name, &printed);
+    }
+    done(rara(
+        &folder,
+        &format!("render @/scene.ply -o @/z.png --size 160x120 --up z {}", background()),
+    ));
+    let drawn = Picture::load(folder.join("z.png")).expect("a picture");
+    let off = apart(&drawn, &dropped);
+    assert!(off <= 1.01, "the dropped scene is off by {off}/255");
 }
 
 #[test]

@@ -67,12 +67,21 @@ impl Client {
 
     /// Gives the window the keyboard, and presses a key and lets it go.
     pub(super) fn press(&mut self, window: u32, key: u8) {
+        self.events(window, &[(2, key), (3, key)]);
+    }
+
+    /// The same while another key is held down.
+    pub(super) fn press_with(&mut self, window: u32, held: u8, key: u8) {
+        self.events(window, &[(2, held), (2, key), (3, key), (3, held)]);
+    }
+
+    fn events(&mut self, window: u32, events: &[(u32, u8)]) {
         self.send(42, 1, &[window, 0]); // SetInputFocus
         let name = u32::from_le_bytes(*b"XTES");
         self.request(98, 0, &[5, name, u32::from(b'T')]); // QueryExtension
         let reply = self.reply();
         assert_eq!(reply[8], 1, "the server has XTEST");
-        for event in [2_u32, 3] {
+        for &(event, key) in events {
             let what = event | u32::from(key) << 8;
             self.send(reply[9], 2, &[what, 0, 0, 0, 0, 0, 0, 0]); // FakeInput
         }

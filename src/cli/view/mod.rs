@@ -66,7 +66,8 @@ action before the next one begins:
   timings, flags                          outline on, off
   keys on, off                            numbers on, off
   drop FILE                               repeat N ACTION
-  quit                                    undo                 the last change of a clip"))]
+  quit                                    undo                 the last change of a clip
+  up x, -x, y, -y, z, -z, X,Y,Z           what is up in the picture"))]
 pub(super) struct ViewCommand {
     /// File names of screenshots, .png or .exr; {} becomes the number
     #[arg(short, long, value_name = "OUT", default_value = "view_{}.png", value_parser = values::picture_file())]

@@ -9,6 +9,7 @@ use rara::clip::numbers_of;
 use rara::{Mode, Plane, Projection, Shape};
 
 use super::viewpoint::Walk;
+use rara_scene::direction;
 use rara_scene::picture::size;
 
 /// An action of a viewer. Its text is that of a script's step.
@@ -30,6 +31,10 @@ pub enum Action {
     Projection(Projection),
     /// Look at it by the other projection.
     OtherProjection,
+    /// Make this direction up in the picture.
+    Up(DVec3),
+    /// Make this axis up, or the opposite where the axis is up already.
+    UpAxis(DVec3),
     /// Go back to the camera at the start.
     Reset,
     /// Take the next camera of the file.
@@ -196,6 +201,9 @@ impl FromStr for Action {
                     ));
                 }
             },
+            "up" => Self::Up(direction(rest).map_err(|error| {
+                format!("up {rest}: {error}; x, -x, y, -y, z, -z or X,Y,Z is possible")
+            })?),
             "clip" if rest == "next" => Self::NextClip,
             "clip" => return Err(format!("clip {rest}: next is possible")),
             "plane" | "shape" => Self::Held(held(verb, rest)?),
@@ -242,7 +250,7 @@ impl FromStr for Action {
             "quit" => Self::Quit,
             other => {
                 return Err(format!(
-                    "\"{other}\" is not an action; there are turn, shift, zoom, move, camera, clip, shape, plane, drag, tilt, \
+                    "\"{other}\" is not an action; there are turn, shift, zoom, move, camera, clip, up, shape, plane, drag, tilt, \
                      scale, undo, layer, edit, outline, keys, numbers, drop, mode, screenshot, resize, minimise, \
                      restore, timings, flags, repeat and quit"
                 ));

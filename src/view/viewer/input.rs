@@ -23,8 +23,8 @@ Keys:
   W A S D Q E                  forward, left, back, right, down, up (Shift: slowly)
   G                            take hold of the next shape
   arrows                       turn the view; with Shift the held shape
-  + -                          nearer, farther
-  O                            orthographic, or in perspective
+  + -, O                       nearer, farther; orthographic, or in perspective
+  Shift+X, Y, Z                make that axis up; once more, down
   R, N                         back to the start; the next camera of --view all
   0 1 2 3                      mode none, hard, rara, exact
   P, I                         turn the clip on or off; keep the other side of the held shape
@@ -98,7 +98,7 @@ impl Input {
                     _ => return None,
                 }
             }
-            Key::Character(text) => letter(text)?,
+            Key::Character(text) => letter(text, shift)?,
             _ => return None,
         };
         // A key that is held down goes on moving, but does not switch to and fro.
@@ -218,8 +218,12 @@ fn named(key: NamedKey, shift: bool) -> Option<Action> {
     })
 }
 
-fn letter(text: &str) -> Option<Action> {
+fn letter(text: &str, shift: bool) -> Option<Action> {
     let held = Action::Held;
+    let axis = |axis| match shift {
+        true => Action::UpAxis(axis),
+        false => held(GripAction::Align(axis)),
+    };
     Some(match text.to_lowercase().as_str() {
         "0" => Action::Mode(Mode::None),
         "1" => Action::Mode(Mode::Hard),
@@ -233,9 +237,9 @@ fn letter(text: &str) -> Option<Action> {
         "p" => held(GripAction::Toggle),
         "i" => held(GripAction::Flip),
         "g" => held(GripAction::Next),
-        "x" => held(GripAction::Align(DVec3::X)),
-        "y" => held(GripAction::Align(DVec3::Y)),
-        "z" => held(GripAction::Align(DVec3::Z)),
+        "x" => axis(DVec3::X),
+        "y" => axis(DVec3::Y),
+        "z" => axis(DVec3::Z),
         "j" => held(GripAction::Scale(1.0 / LARGER)),
         "k" => held(GripAction::Scale(LARGER)),
         "b" => Action::Outline(None),

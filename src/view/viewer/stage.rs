@@ -205,6 +205,17 @@ impl Viewer {
             }
             Action::Projection(projection) => self.viewpoint.projection = projection,
             Action::OtherProjection => self.viewpoint.other_projection(),
+            Action::Up(up) => {
+                self.manner.up = Some(up);
+                self.viewpoint.set_up(up);
+            }
+            Action::UpAxis(axis) => {
+                let up = match self.viewpoint.has_up(axis) {
+                    true => -axis,
+                    false => axis,
+                };
+                return self.act(Action::Up(up));
+            }
             Action::Reset => self.viewpoint.reset(),
             Action::NextClip => self.next_clip(),
             Action::NextView => {

@@ -40,6 +40,8 @@ struct Pose {
 
 /// The view's axis stays this far from straight up and down, radians.
 const POLE: f64 = 0.01;
+/// Who looks at a smaller angle than this along a direction, radians, sees it neither up nor down.
+const ALONG: f64 = 1e-6;
 /// One step of the wheel takes the eye this share of the way nearer.
 const STEP: f64 = 0.1;
 /// No eye stands farther out along an axis: the squares of larger lengths are beyond single precision.
@@ -111,6 +113,19 @@ impl Viewpoint {
         };
     }
 
+    /// True when this axis is up.
+    pub(super) fn has_up(&self, axis: DVec3) -> bool {
+        self.up.dot(axis) > 1.0 - 1e-12
+    }
+
+    /// Rolls the view so that a direction is up, also in the view at the start.
+    pub(super) fn set_up(&mut self, up: DVec3) {
+        self.up = up.normalize();
+        for pose in [&mut self.pose, &mut self.home.0] {
+            pose.axes = rolled(pose.axes, self.up);
+        }
+    }
+
     /// Turns so that what is in front goes right and down by so many degrees.
     pub(super) fn turn(&mut self, degrees: DVec2) {
         let mut pose = self.pose;
@@ -170,6 +185,16 @@ impl Viewpoint {
 impl Pose {
     fn pivot(&self) -> DVec3 {
         self.eye + self.axes.z_axis * self.distance
+    }
+}
+
+/// The axes rolled so that a direction is up; as they are where they look along it.
+fn rolled(axes: DMat3, up: DVec3) -> DMat3 {
+    let forward = axes.z_axis;
+    let across = forward.cross(up);
+    match across.length() > ALONG {
+        true => orthonormal(DMat3::from_cols(across, -up, forward)),
+        false => axes,
     }
 }
 

@@ -39,6 +39,8 @@ fn what_is_written_is_what_is_done() {
     assert_eq!(parsed("numbers off"), Action::Numbers(Some(false)));
     assert_eq!(parsed("drop a b.ply"), Action::Drop("a b.ply".into()));
     assert_eq!(parsed("mode hard"), Action::Mode(Mode::Hard));
+    assert_eq!(parsed("up -z"), Action::Up(DVec3::NEG_Z));
+    assert_eq!(parsed("up 0,1,2"), Action::Up(DVec3::new(0.0, 1.0, 2.0)));
     assert_eq!(parsed("camera fly"), Action::Walk(Walk::Fly));
     assert_eq!(
         parsed("move 1,0,-2"),
@@ -63,6 +65,8 @@ fn what_means_nothing_is_refused_with_what_would() {
         ("plane +", "'+' is not a finite number"),
         ("shape up", "sphere:0,0,0,1"),
         ("shape torus:1", "not a shape"),
+        ("up", "-z or X,Y,Z"),
+        ("up 0,0,0", "cannot be zero"),
         ("scale 0", "above zero"),
         ("scale -2", "above zero"),
         ("layer", "number from 1"),

@@ -53,6 +53,17 @@ fn shift_takes_the_arrows_to_the_plane() {
 }
 
 #[test]
+fn shift_takes_the_axes_to_the_view_and_capitals_alone_do_not() {
+    let mut input = Input::default();
+    let align = Action::Held(GripAction::Align(DVec3::Y));
+    assert_eq!(press(&mut input, "Y", false), Some(align));
+    input.modifiers(ModifiersState::SHIFT);
+    let up = Action::UpAxis(DVec3::Y);
+    assert_eq!(press(&mut input, "Y", false), Some(up));
+    assert_eq!(press(&mut input, "Y", true), None);
+}
+
+#[test]
 fn shift_takes_the_wheel_to_the_shape() {
     let mut input = Input::default();
     let up = MouseScrollDelta::LineDelta(0.0, 2.0);

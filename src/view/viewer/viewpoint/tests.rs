@@ -74,6 +74,36 @@ fn no_turn_goes_over_a_pole_or_rolls_the_view() {
 }
 
 #[test]
+fn what_is_made_up_is_up_in_the_picture_and_in_the_view_at_the_start() {
+    for up in [DVec3::X, DVec3::Y, DVec3::new(1.0, -2.0, 0.5)] {
+        let mut view = start();
+        view.turn(DVec2::new(20.0, 30.0));
+        let before = view.camera(SIZE);
+        view.set_up(up);
+        let after = view.camera(SIZE);
+        assert_eq!(after.eye, before.eye);
+        assert!((after.rotation.row(2) - before.rotation.row(2)).length() < 1e-12);
+        view.turn(DVec2::new(-50.0, 10.0));
+        view.turn(DVec2::new(7.0, -3.0));
+        for _ in 0..2 {
+            let rows = view.camera(SIZE).rotation;
+            assert!(rows.row(0).dot(up).abs() < 1e-9, "{up} rolls");
+            assert!(rows.row(1).dot(up) < 0.0, "{up} is down");
+            view.reset();
+        }
+        assert!(view.has_up(up.normalize()) && !view.has_up(-up.normalize()));
+    }
+    // Who looks along it sees it neither up nor down, and can still turn.
+    let mut view = start();
+    let before = view.camera(SIZE);
+    view.set_up(DVec3::Z);
+    assert_eq!(view.camera(SIZE), before);
+    view.turn(DVec2::new(10.0, 40.0));
+    let rows = view.camera(SIZE).rotation;
+    assert!(rows.is_finite() && rows.row(0).dot(DVec3::Z).abs() < 1e-9);
+}
+
+#[test]
 fn what_is_dragged_sideways_follows_the_mouse() {
     let mut view = start();
     let by = DVec2::new(30.0, -17.0);

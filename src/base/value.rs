@@ -115,6 +115,21 @@ impl<T: Value> Value for Option<T> {
     }
 }
 
+/// A share, as a number from 0 to 1 or as a percentage.
+///
+/// # Errors
+/// A sentence that says what was expected.
+pub fn share(text: &str) -> Result<f64, String> {
+    let (text, whole) = match text.strip_suffix('%') {
+        Some(text) => (text, 100.0),
+        None => (text, 1.0),
+    };
+    let share = text.parse().ok();
+    let share = share.filter(|share: &f64| (0.0..=whole).contains(share));
+    let share = share.ok_or("expected a number from 0 to 1, or from 0% to 100%")?;
+    Ok(share / whole)
+}
+
 /// Names of colours whose meaning is older here than CSS's names, which have 0,0.5,0 for green.
 const COLOURS: [(&str, [f32; 3]); 2] = [("gray", [0.5, 0.5, 0.5]), ("green", [0.0, 1.0, 0.0])];
 
@@ -170,6 +185,15 @@ fn css(text: &str) -> Option<[f32; 3]> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn shares_are_numbers_or_percentages() {
+        assert_eq!((share("0.25"), share("25%")), (Ok(0.25), Ok(0.25)));
+        assert_eq!((share("0"), share("100%")), (Ok(0.0), Ok(1.0)));
+        for wrong in ["1.5", "101%", "-1%", "nan", "%", ""] {
+            assert!(share(wrong).is_err(), "{wrong}");
+        }
+    }
 
     #[test]
     fn colours() {

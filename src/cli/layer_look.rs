@@ -3,10 +3,8 @@
 use super::failure::Failure;
 use super::layer_names::named;
 use super::values;
-use rara::scene::layers::{LoadedLayer, SceneLayers};
-
-/// The share of a tint's colour where the flag says none.
-const TINT: f32 = 0.5;
+use rara::Error;
+use rara::scene::layers::{LoadedLayer, SceneLayers, Tint};
 
 /// Does what the flags say, in their order.
 pub(super) fn apply(
@@ -19,12 +17,8 @@ pub(super) fn apply(
         Ok(move |layer: &mut LoadedLayer| layer.state = layer.state.opacity(opacity))
     })?;
     each(loaded, "--layer-tint", tints, |text| {
-        let (colour, share) = match text.rsplit_once(':') {
-            Some((colour, share)) => (colour, values::share(share)?),
-            None => (text, TINT),
-        };
-        let colour = values::colour(colour)?;
-        Ok(move |layer: &mut LoadedLayer| layer.gaussians.tint(colour, share))
+        let tint: Tint = text.parse().map_err(|error: Error| error.to_string())?;
+        Ok(move |layer: &mut LoadedLayer| tint.apply(&mut layer.gaussians))
     })
 }
 

@@ -196,6 +196,7 @@ impl SceneArgs {
             antialiasing,
             low_pass,
             ("--place", &self.place),
+            ("--layer-tint", &self.layer_tint),
         ];
         let all = all.into_iter();
         all.flat_map(|(flag, texts)| texts.iter().map(move |text| (flag, text.as_str())))

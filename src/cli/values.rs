@@ -11,6 +11,7 @@ use glam::{DQuat, DVec3};
 use super::output::{self, STANDARD};
 use super::pattern::is_several;
 use rara_base::value::Value;
+pub(super) use rara_base::value::share as exact_share;
 pub(super) use rara_scene::direction;
 pub(super) use rara_scene::picture::size;
 
@@ -95,16 +96,6 @@ pub(super) fn meant<'a>(wanted: &str, names: impl Iterator<Item = &'a str>) -> S
 /// A share in single precision.
 pub(super) fn share(text: &str) -> Result<f32, String> {
     exact_share(text).map(|share| share as f32)
-}
-
-/// A share, as a number from 0 to 1 or as a percentage.
-pub(super) fn exact_share(text: &str) -> Result<f64, String> {
-    let (text, whole) = match text.strip_suffix('%') {
-        Some(text) => (text, 100.0),
-        None => (text, 1.0),
-    };
-    let is = |x: f64| (0.0..=whole).contains(&x);
-    Ok(number(text, is, "a number from 0 to 1, or from 0% to 100%")? / whole)
 }
 
 /// The name of one scene's file, or of several.

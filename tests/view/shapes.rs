@@ -7,6 +7,7 @@ use rara::clip::load_clips;
 
 use super::display::Display;
 use super::viewer::{Viewer, apart, done, draw, draws_again, draws_again_of, folder, rara};
+use crate::folder::until;
 
 #[test]
 fn every_shape_is_moved_turned_and_scaled_and_drawn_again() {
@@ -110,6 +111,8 @@ fn layers_are_switched_and_cut_by_clips_of_their_own() {
         ("whole", "edit k=v\nshape off"),
         ("released", "edit release"),
         ("cut", "edit frame\nshape +0.3"),
+        ("faded", "layer outer skin 40%"),
+        ("tinted", "layer k=v tint red:90%"),
         ("hidden", "layer 1"),
     ];
     for (name, lines) in steps {
@@ -135,6 +138,38 @@ fn layers_are_switched_and_cut_by_clips_of_their_own() {
             one.layer.as_deref() == layer && text.starts_with(begin),
             "{layer:?} {text}"
         );
+    }
+}
+
+#[test]
+fn layers_are_faded_and_tinted_by_keys_and_drawn_again() {
+    let folder = folder("looks");
+    let Some(display) = Display::start(&folder) else {
+        return;
+    };
+    // The parts of a set keep their order, and what was typed stays below what the window mixes in.
+    let words = "@/scene.ply --no-outline --background 0.2,0.4,0.6 --size 160x120 --select left=inside(plane:-1,0,0,0) \
+                 --layer-tint left=blue:60% --layer-opacity left=80%";
+    let mut viewer = Viewer::open(&display, &folder, words);
+    let typed = viewer.screenshot("typed");
+    let mut client = display.client();
+    let window = client.window();
+    let (shift, control, f2) = (50, 37, 68);
+    let mut before = typed.clone();
+    for (name, held) in [("faded", shift), ("red", control), ("gold", control)] {
+        client.press_with(window, held, f2);
+        until(name, || {
+            (apart(&display.corner(160, 120), &before) > 5.0).then_some(())
+        });
+        before = viewer.screenshot(name);
+        viewer.shows(name, &before);
+    }
+    viewer.say("layer left 80%\nlayer left tint none\nundo");
+    let back = viewer.screenshot("back");
+    assert_eq!(apart(&back, &typed), 0.0, "it is as it was typed");
+    let printed = viewer.quit();
+    for name in ["typed", "faded", "red", "gold", "back"] {
+        draws_again(&folder, name, &printed);
     }
 }
 

@@ -2,7 +2,7 @@
 
 use rara::clip::Expression;
 
-use rara::scene::layers::LayerClip;
+use rara::scene::layers::{LayerClip, Tint};
 use rara_view::viewer::NamedLayer;
 
 use super::shots::quoted;
@@ -36,6 +36,9 @@ impl<T: PartialEq> Change<T> {
 struct Changes<'a> {
     name: &'a str,
     visible: Change<bool>,
+    opacity: Change<f32>,
+    /// The colour that the window has mixed into them.
+    tint: Change<Option<Tint>>,
     /// `None` is the frame's clip.
     clip: Change<Option<LayerClip>>,
 }
@@ -46,17 +49,21 @@ fn changes<'a>(layers: &'a [NamedLayer], section: &[Expression]) -> Vec<Changes<
         if all.iter().any(|known| known.name == name) {
             continue;
         }
-        let mut visible = Vec::new();
-        let mut clip = Vec::new();
+        let (mut visible, mut opacity) = (Vec::new(), Vec::new());
+        let (mut tint, mut clip) = (Vec::new(), Vec::new());
         for layer in layers.iter().filter(|layer| layer.name == *name) {
             for listed in &layer.listed {
                 visible.push((listed.visible, layer.visible));
+                opacity.push((listed.opacity, layer.opacity));
+                tint.push((None, layer.tint));
                 clip.push((listed.clip.clone(), layer.clip(section)));
             }
         }
         all.push(Changes {
             name,
             visible: Change::from_layers(visible),
+            opacity: Change::from_layers(opacity),
+            tint: Change::from_layers(tint),
             clip: Change::from_layers(clip),
         });
     }
@@ -69,6 +76,8 @@ pub(super) fn flags(layers: &[NamedLayer], section: &[Expression]) -> Vec<String
     for Changes {
         name,
         visible,
+        opacity,
+        tint,
         clip,
     } in changes(layers, section)
     {
@@ -77,12 +86,20 @@ pub(super) fn flags(layers: &[NamedLayer], section: &[Expression]) -> Vec<String
             Change::To(true) => flags.push(format!("--unhide={}", quoted(name))),
             Change::None | Change::Unsaid => {}
         }
+        let mut set = |flag: &str, value: String| {
+            flags.push(format!("{flag}={}", quoted(&format!("{name}={value}"))));
+        };
+        if let Change::To(opacity) = opacity {
+            set("--layer-opacity", opacity.to_string());
+        }
+        if let Change::To(Some(tint)) = tint {
+            set("--layer-tint", tint.to_string());
+        }
         if let Change::To(clip) = clip {
-            let clip = clip.map_or("frame".into(), |clip| clip.to_string());
-            flags.push(format!(
-                "--layer-clip={}",
-                quoted(&format!("{name}={clip}"))
-            ));
+            set(
+                "--layer-clip",
+                clip.map_or("frame".into(), |clip| clip.to_string()),
+            );
         }
     }
     flags
@@ -91,7 +108,12 @@ pub(super) fn flags(layers: &[NamedLayer], section: &[Expression]) -> Vec<String
 /// A note on the layers of which the flags cannot say what is shown.
 pub(super) fn note(layers: &[NamedLayer], section: &[Expression]) -> Option<String> {
     let all = changes(layers, section);
-    let is_unsaid = |of: &&Changes<'_>| of.visible == Change::Unsaid || of.clip == Change::Unsaid;
+    let is_unsaid = |of: &&Changes<'_>| {
+        of.visible == Change::Unsaid
+            || of.opacity == Change::Unsaid
+            || of.tint == Change::Unsaid
+            || of.clip == Change::Unsaid
+    };
     let names: Vec<_> = all.iter().filter(is_unsaid).map(|of| of.name).collect();
     let names = (!names.is_empty()).then(|| names.join(" and "))?;
     Some(format!(

@@ -61,7 +61,7 @@ action before the next one begins:
   clip next              of a dropped file     shape plane, box, sphere   puts one there
   mode none, hard, rara, exact            tilt DX,DY           the held shape, degrees
   screenshot [FILE]                       scale FACTOR         the held shape
-  resize WxH                              layer N|NAME [on|off]
+  resize WxH                              layer N|NAME [on|off], 40%, tint COLOUR|none
   minimise, restore                       edit next, frame, N|NAME, release
   timings, flags                          outline on, off
   keys on, off                            numbers on, off

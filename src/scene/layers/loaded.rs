@@ -50,6 +50,8 @@ pub struct LoadedLayer {
 pub struct ListedState {
     /// Whether it is shown.
     pub visible: bool,
+    /// The factor of its opacities, 0 to 1.
+    pub opacity: f32,
     /// What cuts it in place of the frame's clip, if anything does.
     pub clip: Option<LayerClip>,
 }
@@ -62,6 +64,7 @@ impl LoadedLayer {
             state,
             listed: ListedState {
                 visible: state.visible,
+                opacity: state.opacity,
                 clip: clip.clone(),
             },
             clip,

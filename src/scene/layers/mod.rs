@@ -17,6 +17,7 @@ mod loaded;
 mod place;
 mod region;
 mod select;
+mod tint;
 
 use std::cell::LazyCell;
 use std::fmt;
@@ -40,6 +41,7 @@ pub use loaded::{Extra, ListedState, LoadedLayer, SceneLayers, load, load_by};
 pub use place::{Place, stretch};
 pub use region::Region;
 pub use select::{FileNumbers, LayerRemains, SelectionRequest, compared, joined};
+pub use tint::Tint;
 
 /// A layer that is to be read.
 #[derive(Debug, Clone, Default)]

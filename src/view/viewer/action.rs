@@ -9,6 +9,8 @@ use rara::clip::numbers_of;
 use rara::{Mode, Plane, Projection, Shape};
 
 use super::viewpoint::Walk;
+use rara::scene::layers::Tint;
+use rara_base::value::share;
 use rara_scene::direction;
 use rara_scene::picture::size;
 
@@ -47,6 +49,10 @@ pub enum Action {
     Undo,
     /// Show a layer or hide it; whichever it is not where that is not said.
     Layer(Which, Option<bool>),
+    /// Draw a layer with this share of its opacity, 0 to 1; the next is 100, 50, 25 or 10 %.
+    LayerOpacity(Which, Step<f32>),
+    /// Mix a colour into a layer, or none; the next is one of a few.
+    LayerTint(Which, Step<Option<Tint>>),
     /// Choose the clip that is edited.
     Edit(Edit),
     /// Outline the shapes that clip, or not; whichever it is not where that is not said.
@@ -93,6 +99,15 @@ impl fmt::Display for Which {
             Self::Typed(text) => text.fmt(to),
         }
     }
+}
+
+/// A value, or the next of those that a key steps through.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Step<T> {
+    /// The next one.
+    Next,
+    /// This one.
+    To(T),
 }
 
 /// The clip that is edited from now on.
@@ -293,19 +308,42 @@ fn held(verb: &str, text: &str) -> Result<GripAction, String> {
     })
 }
 
-/// What follows `layer`: a name or number, and perhaps on or off.
-fn layer(text: &str) -> Result<Action, String> {
-    let last = text.rsplit_once(char::is_whitespace);
-    let (which, visible) = match last.and_then(|(which, word)| Some((which, switch(word)?))) {
-        Some((which, visible)) => (which.trim(), Some(visible)),
-        None => (text, None),
-    };
-    match which {
-        "" | "on" | "off" => {
-            Err("layer takes a layer's name or its number from 1, and on or off".into())
-        }
-        which => Ok(Action::Layer(Which::Typed(which.into()), visible)),
+/// The layers that follow `layer`.
+fn which(text: &str) -> Result<Which, String> {
+    match text.trim() {
+        "" | "on" | "off" => Err(
+            "layer takes a layer's name or its number from 1, and on, off, a share such as 40%, or tint and a colour".into(),
+        ),
+        which => Ok(Which::Typed(which.into())),
     }
+}
+
+/// What follows `layer`: a name or number, and perhaps what becomes of it.
+fn layer(text: &str) -> Result<Action, String> {
+    let Some((before, word)) = text.rsplit_once(char::is_whitespace) else {
+        return Ok(Action::Layer(which(text)?, None));
+    };
+    if let Some(visible) = switch(word) {
+        return Ok(Action::Layer(which(before)?, Some(visible)));
+    }
+    if let Some((before, "tint")) = before.trim_end().rsplit_once(char::is_whitespace) {
+        let tint = match word {
+            "none" => None,
+            colour => {
+                let tint = colour.parse::<Tint>();
+                Some(tint.map_err(|error| format!("layer {text}: {error}"))?)
+            }
+        };
+        return Ok(Action::LayerTint(which(before)?, Step::To(tint)));
+    }
+    if word.ends_with('%') {
+        let opacity = share(word).map_err(|error| format!("layer {text}: {error}"))?;
+        return Ok(Action::LayerOpacity(
+            which(before)?,
+            Step::To(opacity as f32),
+        ));
+    }
+    Ok(Action::Layer(which(text)?, None))
 }
 
 fn switch(text: &str) -> Option<bool> {

@@ -7,7 +7,7 @@ use rara::Mode;
 use winit::event::{ElementState, MouseButton, MouseScrollDelta};
 use winit::keyboard::{Key, KeyCode, ModifiersState, NamedKey, PhysicalKey};
 
-use super::action::{Action, Edit, GripAction, Kind, Which};
+use super::action::{Action, Edit, GripAction, Kind, Step, Which};
 
 /// The list of keys, which the key H shows.
 pub const KEYS: &str = "\
@@ -34,9 +34,8 @@ Keys:
   4 5 6                        put a plane, a box or a sphere in the held shape's place
   Backspace or Ctrl+Z          take back the last change of a clip
   B                            outlines of the shapes on or off
-  F1 to F9                     layer 1 to 9 on or off
-  L                            edit the clip of the next layer; after the last one, the frame's clip
-  U                            remove the edited layer's own clip
+  F1 to F9                     layer 1 to 9 on or off (Shift: its opacity; Ctrl: its tint)
+  L, U                         edit the clip of the next layer, or the frame's; remove the layer's
   M                            show or hide the mode and the clip's numbers
   C or F12                     screenshot
   F                            print the flags that draw this picture on the terminal
@@ -91,7 +90,7 @@ impl Input {
         }
         let shift = self.modifiers.shift_key();
         let action = match logical {
-            Key::Named(key) => named(*key, shift)?,
+            Key::Named(key) => named(*key, self.modifiers)?,
             Key::Character(text) if self.modifiers.control_key() => {
                 match &text.to_lowercase()[..] {
                     "z" => Action::Undo,
@@ -183,7 +182,8 @@ fn direction(code: KeyCode) -> DVec3 {
     }
 }
 
-fn named(key: NamedKey, shift: bool) -> Option<Action> {
+fn named(key: NamedKey, modifiers: ModifiersState) -> Option<Action> {
+    let shift = modifiers.shift_key();
     let arrow = |x: f64, y: f64| {
         let degrees = ARROW * DVec2::new(x, y);
         if shift {
@@ -193,7 +193,14 @@ fn named(key: NamedKey, shift: bool) -> Option<Action> {
         }
     };
     let step = if shift { 0.1 } else { 1.0 };
-    let layer = |number| Action::Layer(Which::Number(number), None);
+    let layer = |number| {
+        let which = Which::Number(number);
+        match (modifiers.control_key(), shift) {
+            (true, _) => Action::LayerTint(which, Step::Next),
+            (false, true) => Action::LayerOpacity(which, Step::Next),
+            (false, false) => Action::Layer(which, None),
+        }
+    };
     Some(match key {
         NamedKey::ArrowLeft => arrow(-1.0, 0.0),
         NamedKey::ArrowRight => arrow(1.0, 0.0),

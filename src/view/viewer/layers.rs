@@ -6,12 +6,12 @@ use std::time::{Duration, Instant};
 use glam::DVec3;
 use rara::{Camera, ClipOp};
 
-use super::action::{Edit, GripAction, Which};
+use super::action::{Edit, GripAction, Step, Which};
 use super::cut::ClipEditor;
 use super::failure::Failure;
 use crate::Windowed;
 use rara::clip::Expression;
-use rara::scene::layers::{LayerClip, ListedState, LoadedLayer};
+use rara::scene::layers::{LayerClip, ListedState, LoadedLayer, Tint};
 
 /// The frame's clip and the layers.
 #[derive(Debug, Clone)]
@@ -44,6 +44,11 @@ const MOST_UNDONE: usize = 200;
 /// What follows a change of the same kind this soon belongs to it, as the steps of a drag do.
 const AT_ONCE: Duration = Duration::from_millis(700);
 
+/// The shares of its opacity that a key gives a layer.
+const OPACITIES: [f32; 4] = [1.0, 0.5, 0.25, 0.1];
+/// The colours that a key mixes into a layer.
+const TINTS: [&str; 5] = ["red", "gold", "limegreen", "deepskyblue", "orchid"];
+
 /// The layers of a name that begin alike.
 #[derive(Debug, Clone)]
 pub struct NamedLayer {
@@ -53,6 +58,10 @@ pub struct NamedLayer {
     places: Vec<usize>,
     /// True when they are shown.
     pub visible: bool,
+    /// The factor of their opacities, 0 to 1.
+    pub opacity: f32,
+    /// The colour that the window has mixed into them; `None` where they are as they were read.
+    pub tint: Option<Tint>,
     /// Their own clip; one that is off leaves them whole. `None` where the frame's holds.
     own: Option<ClipEditor>,
     /// What is listed of each of them, with clips as they can be edited.
@@ -73,11 +82,13 @@ impl Clips {
         for (place, layer) in loaded.iter().enumerate() {
             let is_alike = |other: &&mut NamedLayer| {
                 let first = &loaded[other.places[0]];
-                let facts = |l: &LoadedLayer| (l.name.clone(), l.state.visible, l.clip.clone());
+                let shown = |l: &LoadedLayer| (l.state.visible, l.state.opacity);
+                let facts = |l: &LoadedLayer| (l.name.clone(), shown(l), l.clip.clone());
                 facts(first) == facts(layer)
             };
             let listed = ListedState {
                 visible: layer.listed.visible,
+                opacity: layer.listed.opacity,
                 clip: layer
                     .listed
                     .clip
@@ -93,6 +104,8 @@ impl Clips {
                     name: layer.name.clone(),
                     places: vec![place],
                     visible: layer.state.visible,
+                    opacity: layer.state.opacity,
+                    tint: None,
                     own: layer.clip.as_ref().map(|clip| own(clip, centre)),
                     listed: vec![listed],
                 }),
@@ -225,6 +238,47 @@ impl Clips {
         Ok(())
     }
 
+    /// Gives layers a share of their opacity. Returns a few words on it.
+    ///
+    /// # Errors
+    /// [`Failure::Asked`] where there are no such layers.
+    pub fn fade(&mut self, which: &Which, opacity: Step<f32>) -> Result<String, Failure> {
+        let layer = self.find(which)?;
+        let layer = &mut self.layers[layer];
+        layer.opacity = match opacity {
+            Step::To(opacity) => opacity,
+            Step::Next => {
+                let less = OPACITIES.into_iter().find(|step| *step < layer.opacity);
+                less.unwrap_or(OPACITIES[0])
+            }
+        };
+        self.changed = true;
+        let percent = 100.0 * layer.opacity;
+        Ok(format!("{}: opacity {percent:.0} %", layer.name))
+    }
+
+    /// Notes that a colour is mixed into layers. Returns their numbers in the scene, the colour, and a few words on it.
+    ///
+    /// # Errors
+    /// [`Failure::Asked`] where there are no such layers.
+    pub(super) fn tint(
+        &mut self,
+        which: &Which,
+        tint: Step<Option<Tint>>,
+    ) -> Result<(Vec<usize>, Option<Tint>, String), Failure> {
+        let layer = self.find(which)?;
+        let layer = &mut self.layers[layer];
+        layer.tint = match tint {
+            Step::To(tint) => tint,
+            Step::Next => next_tint(layer.tint),
+        };
+        // The layers come to the device anew, as they were read.
+        self.changed = true;
+        let name = layer.tint.map_or("none".into(), tint_name);
+        let text = format!("{}: tint {name}", layer.name);
+        Ok((layer.places.clone(), layer.tint, text))
+    }
+
     /// Chooses the clip that is edited.
     ///
     /// # Errors
@@ -257,7 +311,8 @@ impl Clips {
             let clip = layer.clip(self.frame.section()).map(|clip| clip.clip());
             for &place in &layer.places {
                 let state = windowed.layers()[place].state();
-                windowed.set_layer_state(place, state.visible(layer.visible))?;
+                let state = state.visible(layer.visible).opacity(layer.opacity);
+                windowed.set_layer_state(place, state)?;
                 windowed.set_layer_clip(place, clip.clone())?;
             }
         }
@@ -310,6 +365,27 @@ impl Clips {
             ))
         })
     }
+}
+
+/// The colours of [`TINTS`], with their names.
+fn tints() -> impl Iterator<Item = (&'static str, Tint)> {
+    let named = |name: &&'static str| Some((*name, name.parse().ok()?));
+    TINTS.iter().filter_map(named)
+}
+
+/// The colour behind this one; none behind the last, and behind one that no key gives.
+fn next_tint(now: Option<Tint>) -> Option<Tint> {
+    let mut all = tints().map(|(_, tint)| tint);
+    match now {
+        None => all.next(),
+        Some(now) => all.skip_while(|tint| *tint != now).nth(1),
+    }
+}
+
+/// The name of a colour, or its numbers where no key gives it.
+fn tint_name(tint: Tint) -> String {
+    let name = tints().find(|(_, one)| *one == tint);
+    name.map_or_else(|| tint.to_string(), |(name, _)| name.into())
 }
 
 /// A layer's own clip as it can be edited.

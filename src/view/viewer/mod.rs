@@ -46,7 +46,7 @@ mod text;
 mod title;
 mod viewpoint;
 
-pub use action::{Action, Edit, GripAction, Which};
+pub use action::{Action, Edit, GripAction, Step, Which};
 pub use cut::ClipEditor;
 pub use desc::{Follow, ViewerDesc};
 pub use display::Connection;

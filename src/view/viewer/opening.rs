@@ -4,12 +4,13 @@ use std::time::Instant;
 
 use rara::clip::{NamedClip, are_alternatives};
 
+use super::action::{Step, Which};
 use super::dropped::DroppedFile;
 use super::failure::Failure;
 use super::loading::{Load, Loading, TICK};
 use super::scenery::SceneView;
 use super::stage::{AppEvent, Viewer};
-use rara::scene::layers::LayerClip;
+use rara::scene::layers::{LayerClip, Tint};
 
 impl Viewer {
     pub(super) fn load(&mut self, load: Load) -> Result<(), Failure> {
@@ -73,23 +74,40 @@ impl Viewer {
 
     fn show(&mut self, fresh: SceneView) -> Result<(), Failure> {
         if let Some(loading) = &mut self.loading {
-            loading.uploading(&fresh.loaded);
+            loading.uploading(&fresh.scenery.scene);
             // The window does nothing else meanwhile, so that it says so before.
             if self.visible() {
                 self.draw()?;
             }
         }
-        let uploaded = self
-            .windowed
-            .load_as(fresh.loaded.scene(), self.manner.settings.precision.sh);
-        // Where it does not fit there is none, and one that is refused leaves the one before.
-        self.loaded = !self.windowed.layers().is_empty();
-        self.last = None;
-        uploaded?;
+        let uploaded = fresh
+            .scenery
+            .upload(&mut self.windowed, &self.manner.settings);
+        self.after_upload(uploaded)?;
         self.scenery = fresh.scenery;
         self.view = 0;
         self.viewpoint = self.scenery.viewpoint(0);
         Ok(())
+    }
+
+    /// Mixes a colour into layers, or none.
+    pub(super) fn tint(&mut self, which: &Which, tint: Step<Option<Tint>>) -> Result<(), Failure> {
+        let (places, tint, text) = self.scenery.clips.tint(which, tint)?;
+        self.scenery.tint(&places, tint);
+        let uploaded = self
+            .scenery
+            .upload(&mut self.windowed, &self.manner.settings);
+        self.after_upload(uploaded)?;
+        self.overlay.tell(text);
+        Ok(())
+    }
+
+    /// Notes which scene there is after an upload: where it does not fit there is none, and one that is refused leaves the one
+    /// before.
+    fn after_upload(&mut self, uploaded: rara::Result<()>) -> Result<(), Failure> {
+        self.loaded = !self.windowed.layers().is_empty();
+        self.last = None;
+        Ok(uploaded?)
     }
 
     /// Takes the next of the clips of a file, of which one is meant.

@@ -1,23 +1,24 @@
 //! What a viewer shows: a scene and where it is looked at from, and what stays when another scene comes.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use glam::DVec3;
 use rara::clip::Expression;
-use rara::scene::layers::{self, SceneLayers};
+use rara::scene::layers::{self, SceneLayers, Tint};
 use rara::scene::trained_folder;
-use rara::{Camera, ClipOp, Scene, Settings};
+use rara::{Camera, ClipOp, Gaussians, Scene, Settings};
 use rara_shots::{Framing, Lens, UP, Visible};
 
 use super::cut::ClipEditor;
 use super::failure::Failure;
 use super::layers::Clips;
 use super::viewpoint::Viewpoint;
+use crate::Windowed;
 
 /// A scene that has been read, and how it is looked at.
 #[derive(Debug)]
 pub struct SceneView {
-    pub(super) loaded: SceneLayers,
     pub(super) scenery: Scenery,
 }
 
@@ -26,6 +27,10 @@ pub struct SceneView {
 pub(super) struct Scenery {
     /// The scene's name, for the title.
     pub(super) name: String,
+    /// The scene's layers as they were uploaded; their Gaussians stay on the host.
+    pub(super) scene: SceneLayers,
+    /// The Gaussians of tinted layers as they were read, by the layers' numbers.
+    untinted: BTreeMap<usize, Gaussians>,
     /// The cameras to choose from, each with its up direction; the first is the start.
     pub(super) views: Vec<(Camera, DVec3)>,
     pub(super) clips: Clips,
@@ -59,13 +64,15 @@ impl SceneView {
         let clips = Clips::new(frame, &loaded.layers, centre);
         let scenery = Scenery {
             name: name(&loaded.scene()),
+            scene: loaded,
+            untinted: BTreeMap::new(),
             views,
             clips,
             centre: visible.middle(),
             radius: visible.radius(),
             notes: Vec::new(),
         };
-        Self { loaded, scenery }
+        Self { scenery }
     }
 
     /// Notes what the program wants to know of the scene when it is [shown](super::Shown::notes), as where it is from.
@@ -117,12 +124,33 @@ impl Scenery {
         let cut = ClipEditor::new(Vec::new(), ClipOp::And, DVec3::ZERO);
         Ok(Self {
             name: String::new(),
+            scene: SceneLayers::default(),
+            untinted: BTreeMap::new(),
             views: vec![(camera, up)],
             clips: Clips::new(cut, &[], DVec3::ZERO),
             centre: DVec3::ZERO,
             radius: 1.0,
             notes: Vec::new(),
         })
+    }
+
+    /// Mixes a colour into layers of these numbers, or leaves them as they were read.
+    pub(super) fn tint(&mut self, places: &[usize], tint: Option<Tint>) {
+        for &place in places {
+            let gaussians = &mut self.scene.layers[place].gaussians;
+            if let Some(plain) = self.untinted.remove(&place) {
+                *gaussians = plain;
+            }
+            if let Some(tint) = tint {
+                self.untinted.insert(place, gaussians.clone());
+                tint.apply(gaussians);
+            }
+        }
+    }
+
+    /// Uploads the scene in place of the one that a window shows.
+    pub(super) fn upload(&self, windowed: &mut Windowed, settings: &Settings) -> rara::Result<()> {
+        windowed.load_as(self.scene.scene(), settings.precision.sh)
     }
 
     pub(super) fn viewpoint(&self, view: usize) -> Viewpoint {

@@ -231,6 +231,11 @@ impl Viewer {
             }
             Action::Undo => self.scenery.clips.undo(),
             Action::Layer(which, visible) => self.scenery.clips.show(&which, visible)?,
+            Action::LayerOpacity(which, opacity) => {
+                let text = self.scenery.clips.fade(&which, opacity)?;
+                self.overlay.tell(text);
+            }
+            Action::LayerTint(which, tint) => self.tint(&which, tint)?,
             Action::Edit(edit) => self.scenery.clips.edit(&edit)?,
             Action::Outline(on) => self.manner.outlined = on.unwrap_or(!self.manner.outlined),
             Action::Keys(on) if self.visible() && !self.windowed.shows_panels() => {

@@ -2,7 +2,7 @@ use super::*;
 use glam::DVec3;
 use rara::scene::layers::LoadedLayer;
 use rara::{Camera, ClipOp, LayerState};
-use rara_view::viewer::{ClipEditor, Clips, Edit, GripAction, Which};
+use rara_view::viewer::{ClipEditor, Clips, Edit, GripAction, Step, Which};
 
 fn layer(name: &str, visible: bool, clip: Option<&str>) -> LoadedLayer {
     let clip = clip.map(|text| LayerClip::parse(text).unwrap());
@@ -134,6 +134,19 @@ fn flags_say_what_differs_from_the_list() {
     );
     clips.edit(&Edit::Release).unwrap();
     assert_eq!(said(&clips)[2], "--layer-clip='a b=frame'");
+}
+
+#[test]
+fn an_opacity_is_said_where_it_is_another_than_the_listed_one() {
+    let mut listed = layer("a b", true, None);
+    listed.state = listed.state.opacity(0.25);
+    listed.listed.opacity = 0.5;
+    let mut clips = clips(&[listed, layer("skin", true, None)]);
+    assert_eq!(said(&clips), ["--layer-opacity='a b=0.25'"]);
+    let mut fade = |number, opacity| clips.fade(&Which::Number(number), Step::To(opacity));
+    fade(1, 0.5).unwrap();
+    fade(2, 0.1).unwrap();
+    assert_eq!(said(&clips), ["--layer-opacity=skin=0.1"]);
 }
 
 #[test]

@@ -29,6 +29,14 @@ fn what_is_written_is_what_is_done() {
         parsed("layer left lung off"),
         Action::Layer(which("left lung"), Some(false))
     );
+    assert_eq!(
+        parsed("layer left lung 40%"),
+        Action::LayerOpacity(which("left lung"), Step::To(0.4))
+    );
+    let tint = |tint| Action::LayerTint(which("left lung"), Step::To(tint));
+    let gold = "gold:30%".parse().unwrap();
+    assert_eq!(parsed("layer left lung tint gold:30%"), tint(Some(gold)));
+    assert_eq!(parsed("layer left lung tint none"), tint(None));
     assert_eq!(parsed("edit next"), Action::Edit(Edit::Next));
     assert_eq!(
         parsed("edit skin"),
@@ -71,6 +79,11 @@ fn what_means_nothing_is_refused_with_what_would() {
         ("scale -2", "above zero"),
         ("layer", "number from 1"),
         ("layer  off", "number from 1"),
+        (
+            "layer skin 101%",
+            "layer skin 101%: expected a number from 0",
+        ),
+        ("layer skin tint rouge", "no colour 'rouge'"),
         ("edit", "next, frame"),
         ("outline", "on or off"),
         ("keys 1", "keys 1: on or off"),

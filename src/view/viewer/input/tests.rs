@@ -46,10 +46,13 @@ fn switches_do_not_repeat_but_moves_do() {
 
 #[test]
 fn shift_takes_the_arrows_to_the_plane() {
-    let turn = named(NamedKey::ArrowLeft, false);
+    let turn = named(NamedKey::ArrowLeft, ModifiersState::empty());
     assert_eq!(turn, Some(Action::Turn(DVec2::new(-5.0, 0.0))));
     let tilt = GripAction::Tilt(DVec2::new(-5.0, 0.0));
-    assert_eq!(named(NamedKey::ArrowLeft, true), Some(Action::Held(tilt)));
+    assert_eq!(
+        named(NamedKey::ArrowLeft, ModifiersState::SHIFT),
+        Some(Action::Held(tilt))
+    );
 }
 
 #[test]
@@ -76,14 +79,27 @@ fn shift_takes_the_wheel_to_the_shape() {
 
 #[test]
 fn function_keys_switch_layers_once() {
-    let mut input = Input::default();
-    let mut press = |repeat| {
-        let key = Key::Named(NamedKey::F3);
-        input.key(&key, PhysicalKey::Code(KeyCode::F3), Pressed, repeat)
-    };
-    let third = Action::Layer(Which::Number(3), None);
-    assert_eq!(press(false), Some(third));
-    assert_eq!(press(true), None);
+    let third = || Which::Number(3);
+    for (modifiers, action) in [
+        (ModifiersState::empty(), Action::Layer(third(), None)),
+        (
+            ModifiersState::SHIFT,
+            Action::LayerOpacity(third(), Step::Next),
+        ),
+        (
+            ModifiersState::CONTROL,
+            Action::LayerTint(third(), Step::Next),
+        ),
+    ] {
+        let mut input = Input::default();
+        input.modifiers(modifiers);
+        let mut press = |repeat| {
+            let key = Key::Named(NamedKey::F3);
+            input.key(&key, PhysicalKey::Code(KeyCode::F3), Pressed, repeat)
+        };
+        assert_eq!(press(false), Some(action));
+        assert_eq!(press(true), None);
+    }
 }
 
 #[test]

@@ -50,6 +50,35 @@ fn layers_are_named_or_numbered() {
 }
 
 #[test]
+fn opacities_and_tints_go_round() {
+    let mut listed = layer("skin", true, None);
+    listed.state = listed.state.opacity(0.4);
+    let mut clips = clips(&[listed, layer("skin", true, None)]);
+    assert_eq!(clips.layers().len(), 2, "they begin in two ways");
+    let first = Which::Number(1);
+    let mut said = |step| clips.fade(&first, step).unwrap();
+    let keys = [(); 5].map(|()| said(Step::Next));
+    let expected = [25, 10, 100, 50, 25].map(|percent| format!("skin: opacity {percent} %"));
+    assert_eq!(keys, expected);
+    assert_eq!(said(Step::To(0.7)), "skin: opacity 70 %");
+    assert_eq!(clips.layers()[0].opacity, 0.7);
+    assert_eq!(clips.layers()[1].opacity, 1.0);
+    let second = Which::Number(2);
+    let mut said = |step| {
+        let (places, _, text) = clips.tint(&second, step).unwrap();
+        assert_eq!(places, [1]);
+        text
+    };
+    for name in TINTS.into_iter().chain(["none", TINTS[0]]) {
+        assert_eq!(said(Step::Next), format!("skin: tint {name}"));
+    }
+    let own = "1,0,0.5:0.25".parse().unwrap();
+    assert_eq!(said(Step::To(Some(own))), "skin: tint 1,0,0.5:0.25");
+    assert_eq!(said(Step::Next), "skin: tint none");
+    assert!(clips.fade(&Which::Number(3), Step::Next).is_err());
+}
+
+#[test]
 fn keys_go_by_the_number_where_scripts_go_by_the_name_first() {
     let mut clips = clips(&[layer("0", true, None), layer("1", true, None)]);
     let hidden = |clips: &Clips| clips.words().unwrap();

@@ -6,7 +6,7 @@ use clap::Args;
 use glam::DVec3;
 use rara::scene::layers::Region;
 use rara::{Aov, Camera, Clip, Picture, Scene, Settings, Show};
-use rara_shots::{Panorama, levelled};
+use rara_shots::{Face, Panorama, levelled};
 
 use super::clip::{Regions, joined};
 use super::failure::Failure;
@@ -29,7 +29,7 @@ use super::save_camera::SaveCameraArgs;
 use super::scenes::SceneArgs;
 use super::section::{Section, SectionArgs, Sections};
 use super::session::{Repeat, Session};
-use super::slice::{self, Cut, SliceArgs, Slicer};
+use super::slice::{self, SliceArgs, Slicer};
 use super::values;
 use super::views::{NamedView, Views};
 
@@ -120,7 +120,7 @@ struct Shot {
 }
 
 impl Shot {
-    fn cut(&self) -> Option<&Cut> {
+    fn cut(&self) -> Option<&Face> {
         self.section.as_ref().map(|section| &section.cut)
     }
 }

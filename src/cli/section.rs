@@ -4,12 +4,11 @@ use clap::Args;
 use rara::clip::Expression;
 use rara::scene::Axis;
 use rara::{Bounds, Clip, ClipOp, Gaussians, Plane, Scene};
-use rara_shots::Visible;
+use rara_shots::{Face, Visible};
 
 use super::camera::CameraArgs;
 use super::clip::{ClipArgs, Regions, joined};
 use super::failure::Failure;
-use super::slice::Cut;
 use super::values;
 use super::views::NamedView;
 
@@ -160,7 +159,7 @@ pub(super) struct Section {
     /// What else clips.
     pub(super) others: Vec<Expression>,
     /// The plane that the camera faces, and what else clips.
-    pub(super) cut: Cut,
+    pub(super) cut: Face,
 }
 
 impl Section {
@@ -297,7 +296,7 @@ impl Sections {
                 },
                 own: seen.shapes(),
                 others: others.clone(),
-                cut: Cut {
+                cut: Face {
                     plane: seen.plane,
                     rest: rest.clone(),
                 },

@@ -192,12 +192,6 @@ impl Session {
             .try_for_each(|(index, clip)| self.headless.set_layer_clip(index, clip))
     }
 
-    /// Shows the layers as they are shown in a scene of the same layers.
-    pub(super) fn set_layer_states(&mut self, scene: &Scene<'_>) -> Result<()> {
-        let mut layers = scene.layers().iter().enumerate();
-        layers.try_for_each(|(index, layer)| self.headless.set_layer_state(index, layer.state()))
-    }
-
     /// Renders the frame `repeat` times from nothing.
     pub(super) fn frame(
         &mut self,

@@ -2,14 +2,14 @@
 
 use clap::Args;
 use rara::{
-    Camera, Clip, ClipOp, Cue, Cues, HeadlessDesc, Layer, Picture, Plane, Projection, Raster,
-    Scene, Settings, Show,
+    Camera, Clip, Cue, Cues, Headless, HeadlessDesc, Layer, Picture, Raster, Scene, Settings, Show,
 };
-use rara_shots::Slice;
+use rara_shots::{Face, OUTLINE_WIDTH, RIM_WIDTH, Slice, cut_by_frame};
 
 use super::combine::FrameSummary;
 use super::failure::Failure;
 use super::layer_names;
+use super::process;
 use super::session::{Repeat, Session};
 use super::values;
 use super::views::NamedView;
@@ -37,19 +37,19 @@ pub(super) struct SliceArgs {
     #[arg(long, value_name = "[NAME=]COLOUR", value_parser = outline)]
     outline: Vec<Outline>,
     /// Width of the line of --outline, pixels
-    #[arg(long, value_name = "PX", value_parser = values::positive, default_value_t = 2.0)]
+    #[arg(long, value_name = "PX", value_parser = values::positive, default_value_t = OUTLINE_WIDTH)]
     outline_width: f32,
     /// Tint each cut surface along its edge
     #[arg(long, value_name = "COLOUR", value_parser = values::colour)]
     rim: Option<[f32; 3]>,
     /// Width of the tint of --rim, pixels
-    #[arg(long, value_name = "PX", value_parser = values::positive, default_value_t = 24.0)]
+    #[arg(long, value_name = "PX", value_parser = values::positive, default_value_t = RIM_WIDTH)]
     rim_width: f32,
     /// Alpha from which a pixel of a slice counts as cut surface, 0 to 1
     ///
     /// --outline and --rim use it: they treat a pixel as cut surface if a picture with --slice would have at least this alpha
     /// there.
-    #[arg(long, value_name = "ALPHA", value_parser = values::share, default_value_t = 0.1)]
+    #[arg(long, value_name = "ALPHA", value_parser = values::share, default_value_t = Cues::default().level)]
     cut_level: f32,
 }
 
@@ -67,13 +67,6 @@ fn outline(text: &str) -> Result<Outline, String> {
     };
     let colour = values::colour(colour)?;
     Ok(Outline { layer, colour })
-}
-
-/// A plane that is sliced, and the clip of what lies on it.
-#[derive(Debug, Clone)]
-pub(super) struct Cut {
-    pub(super) plane: Plane,
-    pub(super) rest: Clip,
 }
 
 impl SliceArgs {
@@ -128,42 +121,22 @@ impl SliceArgs {
 }
 
 /// The faces that a clip cuts and a camera sees.
-pub(super) fn faces(clip: &Clip, camera: &Camera) -> Result<Vec<Cut>, Failure> {
-    let planes = clip.surfaces.iter().map(|surface| surface.as_plane());
-    let planes: Option<Vec<Plane>> = planes.collect();
-    let planes = planes.filter(|_| clip.parts.is_empty());
-    let Some(planes) = planes.filter(|planes| clip.op == ClipOp::And || planes.len() == 1) else {
-        return Err(Failure::Usage(
+pub(super) fn faces(clip: &Clip, camera: &Camera) -> Result<Vec<Face>, Failure> {
+    rara_shots::faces(clip, camera).ok_or_else(|| {
+        Failure::Usage(
             "--outline and --rim mark the faces that planes, slabs and boxes cut together: leave out other shapes and --clip-op or, \
              or look at a --section"
                 .into(),
-        ));
-    };
-    let faces_us = |plane: &Plane| match camera.projection {
-        Projection::Perspective => plane.distance(camera.eye) < 0.0,
-        Projection::Orthographic => plane.normal().dot(camera.rotation.row(2)) > 0.0,
-    };
-    let face = |(at, plane): (usize, &Plane)| {
-        let mut others = planes.clone();
-        others.remove(at);
-        Cut {
-            plane: *plane,
-            rest: Clip::of(others, ClipOp::And),
-        }
-    };
-    let seen = planes.iter().enumerate();
-    Ok(seen
-        .filter(|(_, plane)| faces_us(plane))
-        .map(face)
-        .collect())
+        )
+    })
 }
 
 pub(super) struct Slicer<'a> {
     args: &'a SliceArgs,
     scene: Scene<'a>,
     device: HeadlessDesc,
-    /// A session that is opened for the first cue.
-    session: Option<Session>,
+    /// A renderer that is opened for the first cue.
+    headless: Option<Headless>,
 }
 
 impl<'a> Slicer<'a> {
@@ -177,9 +150,12 @@ impl<'a> Slicer<'a> {
     ) -> Self {
         Self {
             args,
-            scene: of_layers(scene, |layer| is_section || layer.clip().is_none()),
+            scene: match is_section {
+                true => scene.clone(),
+                false => cut_by_frame(scene),
+            },
             device,
-            session: None,
+            headless: None,
         }
     }
 
@@ -201,13 +177,11 @@ impl<'a> Slicer<'a> {
     pub(super) fn frame(
         &self,
         session: &mut Session,
-        (view, cut, settings): (&NamedView, &Cut, &Settings),
+        (view, cut, settings): (&NamedView, &Face, &Settings),
         repeat: Repeat,
     ) -> Result<FrameSummary, Failure> {
         let slice = Slice::new(&self.scene, &cut.plane);
-        session
-            .headless
-            .load_as(slice.scene(), settings.precision.sh)?;
+        slice.load(&mut session.headless, settings)?;
         let mut shown = settings.show(Show::Mean);
         if self.args.opaque {
             shown = shown.background(None);
@@ -225,56 +199,36 @@ impl<'a> Slicer<'a> {
         }
     }
 
-    /// Draws the cues onto a picture of these cut surfaces.
+    /// Draws the cues onto a picture of these faces.
     pub(super) fn draw_cues(
         &mut self,
         picture: &mut Picture,
-        (view, cuts, settings): (&NamedView, &[Cut], &Settings),
+        (view, faces, settings): (&NamedView, &[Face], &Settings),
     ) -> Result<(), Failure> {
         if !self.args.has_cues() {
             return Ok(());
         }
-        let sh = settings.precision.sh;
-        // The picture may be drawn in any way; its slice is made by tiles alone.
-        let shown = settings
-            .show(Show::Mean)
-            .raster(Raster::Auto)
-            .background(None);
-        for cut in cuts {
-            let slice = Slice::new(&self.scene, &cut.plane);
-            let scene = slice.scene();
-            let mut session = match self.session.take() {
-                Some(mut session) => {
-                    session.headless.load_as(&scene, sh)?;
-                    session
+        for face in faces {
+            let slice = Slice::new(&self.scene, &face.plane);
+            let headless = match &mut self.headless {
+                Some(headless) => headless,
+                none => {
+                    process::make_drivers_folder();
+                    none.insert(Headless::new(&self.device)?)
                 }
-                None => Session::open(&self.device, &scene, sh)?,
             };
+            slice.load(headless, settings)?;
             for (layer, cues) in self.args.cues() {
-                let is_meant = |of: &Layer<'_>| layer.is_none_or(|name| of.name() == name);
-                session.set_layer_states(&of_layers(&scene, is_meant))?;
-                let slice = session.picture(&view.camera, &cut.rest, &shown)?;
-                picture.draw_cues(&slice, &cues)?;
+                let seen = (&view.camera, &face.rest, settings);
+                picture.draw_cues(&slice.picture(headless, seen, layer)?, &cues)?;
             }
-            self.session = Some(session);
         }
         Ok(())
     }
 
     /// Frees what was opened for cues.
     pub(super) fn close(self) -> Result<(), Failure> {
-        self.session
-            .map_or(Ok(()), |session| Ok(session.headless.close()?))
+        self.headless
+            .map_or(Ok(()), |headless| Ok(headless.close()?))
     }
-}
-
-/// A scene of whose layers these alone are shown.
-fn of_layers<'a>(scene: &Scene<'a>, is_meant: impl Fn(&Layer<'_>) -> bool) -> Scene<'a> {
-    let layers = scene.layers().iter().map(|layer| {
-        let state = layer.state();
-        layer
-            .clone()
-            .with(state.visible(state.visible && is_meant(layer)))
-    });
-    layers.collect()
 }

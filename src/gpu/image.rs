@@ -156,7 +156,7 @@ impl Image {
         // SAFETY: the caller vouches for `cmd`; the view is the image's own and covers the render area.
         unsafe {
             barrier(&self.device, cmd, self.handle, to_draw);
-            begin_rendering(&self.device, cmd, (self.view, self.extent), clear);
+            begin_rendering(&self.device, cmd, (self.view, self.extent), Some(clear));
         }
     }
 
@@ -252,7 +252,7 @@ pub fn to_be_drawn() -> vk::ImageMemoryBarrier2<'static> {
         .new_layout(vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL)
 }
 
-/// Clears a target and begins rendering to all of it.
+/// Begins rendering to all of a target, which is cleared where a colour is given and otherwise keeps what it holds.
 ///
 /// # Safety
 ///
@@ -262,15 +262,21 @@ pub unsafe fn begin_rendering(
     device: &Device,
     cmd: vk::CommandBuffer,
     (view, extent): (vk::ImageView, vk::Extent2D),
-    clear: [f32; 4],
+    clear: Option<[f32; 4]>,
 ) {
+    let load = match clear {
+        Some(_) => vk::AttachmentLoadOp::CLEAR,
+        None => vk::AttachmentLoadOp::LOAD,
+    };
     let attachments = [vk::RenderingAttachmentInfo::default()
         .image_view(view)
         .image_layout(vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL)
-        .load_op(vk::AttachmentLoadOp::CLEAR)
+        .load_op(load)
         .store_op(vk::AttachmentStoreOp::STORE)
         .clear_value(vk::ClearValue {
-            color: vk::ClearColorValue { float32: clear },
+            color: vk::ClearColorValue {
+                float32: clear.unwrap_or_default(),
+            },
         })];
     let info = vk::RenderingInfo::default()
         .render_area(extent.into())

@@ -1,7 +1,8 @@
 //! Cameras for pictures of a scene: a camera that frames its visible part, cameras on an orbit or on a path through other
 //! cameras, sections across its axes, and panoramas.
 //!
-//! Everything here is computed on the CPU, from scenes and cameras of [`rara`]. Draw the resulting cameras by [`rara`].
+//! Everything here is computed on the CPU, from scenes and cameras of [`rara`], but for the pictures of slices, which a
+//! [`Headless`](rara::Headless) draws. Draw the resulting cameras by [`rara`].
 //!
 //! ```
 //! use rara_shots::{Framing, Lens, Orbit, Visible};
@@ -33,7 +34,7 @@ pub use lens::{Depths, Lens, UP, upright};
 pub use orbit::Orbit;
 pub use panorama::{Panorama, Seams, levelled};
 pub use section::{Section, Sections};
-pub use slice::Slice;
+pub use slice::{Face, OUTLINE_WIDTH, RIM_WIDTH, Slice, cut_by_frame, faces};
 pub use spline::Spline;
 
 /// Where a picture stands on its path, from 0 to 1. A closed path comes back to its beginning with the picture that would be

@@ -28,6 +28,8 @@ struct PanelTexture {
 #[derive(Default)]
 pub(crate) struct Panels {
     stored: Vec<PanelTexture>,
+    /// The picture in the scene's place, if there is one.
+    cover: Option<PanelTexture>,
     /// A buffer a frame in flight, as large as the most bytes so far.
     buffers: [Option<Buffer>; FRAMES],
 }
@@ -35,36 +37,27 @@ pub(crate) struct Panels {
 impl Panels {
     /// Takes these panels for the next frames, in images of this format.
     pub(crate) fn set(&mut self, panels: &[Panel], format: vk::Format) {
-        let stored = |panel: &Panel| {
-            let Picture { width, height, .. } = panel.picture;
-            let pixels = panel.picture.pixels.iter();
-            // A copy reads as many pixels as the size says.
-            if pixels.len() as u64 != u64::from(width) * u64::from(height) {
-                return None;
-            }
-            Some(PanelTexture {
-                at: panel.at,
-                size: (width, height),
-                bytes: pixels
-                    .map(|pixel| packed(*pixel, format))
-                    .collect::<Option<Vec<_>>>()?
-                    .concat(),
-            })
-        };
+        let stored = |panel: &Panel| stored(panel.at, &panel.picture, format);
         self.stored = panels.iter().filter_map(stored).collect();
     }
 
-    /// Puts the panels of a frame in place, before it is recorded: the buffer they are in, and the copies to an image of this
-    /// size; nothing where no image can be copied to. The last frame of this number has been waited for.
+    /// Takes a picture in the scene's place for the next frames that have its size, in images of this format.
+    pub(crate) fn set_cover(&mut self, picture: Option<&Picture>, format: vk::Format) {
+        self.cover = picture.and_then(|picture| stored((0, 0), picture, format));
+    }
+
+    /// Puts cover and panels of a frame in place, before it is recorded, for an image of this size; nothing where no image can be
+    /// copied to. The last frame of this number has been waited for.
     pub(crate) fn write(
         &mut self,
         device: &Device,
         frame: usize,
         size: Option<(u32, u32)>,
-    ) -> Result<Option<(&Buffer, Vec<vk::BufferImageCopy>)>> {
+    ) -> Result<Option<WrittenPanels<'_>>> {
+        let cover = self.cover.as_ref().filter(|cover| Some(cover.size) == size);
         let mut copies = Vec::new();
         let mut shown: Vec<&PanelTexture> = Vec::new();
-        let mut offset = 0;
+        let mut offset = cover.map_or(0, PanelTexture::room);
         for panel in &self.stored {
             let Some(extent) = size.and_then(|size| within(panel, size)) else {
                 continue;
@@ -74,10 +67,10 @@ impl Panels {
                 continue;
             }
             copies.push(copy(offset, panel, extent));
-            offset += panel.bytes.len().next_multiple_of(ALIGNMENT);
+            offset += panel.room();
             shown.push(panel);
         }
-        if copies.is_empty() {
+        if offset == 0 {
             return Ok(None);
         }
         let place = &mut self.buffers[frame];
@@ -91,11 +84,60 @@ impl Panels {
         };
         let buffer = place.insert(buffer);
         let mut mapped = buffer.mapped_mut();
+        let cover = cover.map(|cover| {
+            mapped.write(0, &cover.bytes);
+            copy(0, cover, cover.size)
+        });
         for (panel, copy) in shown.iter().zip(&copies) {
             mapped.write(copy.buffer_offset as usize, &panel.bytes);
         }
-        Ok(Some((buffer, copies)))
+        Ok(Some(WrittenPanels {
+            buffer,
+            cover,
+            copies,
+        }))
     }
+}
+
+/// Cover and panels of a frame, and the buffer that they are in.
+pub(crate) struct WrittenPanels<'a> {
+    buffer: &'a Buffer,
+    cover: Option<vk::BufferImageCopy>,
+    copies: Vec<vk::BufferImageCopy>,
+}
+
+impl WrittenPanels<'_> {
+    /// The copy of the cover, which is of all of the image.
+    pub(crate) fn cover(&self) -> Option<(&Buffer, &vk::BufferImageCopy)> {
+        Some((self.buffer, self.cover.as_ref()?))
+    }
+
+    /// The copies of the panels, if there are any.
+    pub(crate) fn panels(&self) -> Option<(&Buffer, &[vk::BufferImageCopy])> {
+        (!self.copies.is_empty()).then_some((self.buffer, &self.copies[..]))
+    }
+}
+
+impl PanelTexture {
+    /// The bytes from its beginning to that of the next one.
+    fn room(&self) -> usize {
+        self.bytes.len().next_multiple_of(ALIGNMENT)
+    }
+}
+
+/// A picture as images of a format store it; `None` for another format than those of windows, and for a picture that has not as many
+/// pixels as its size says, since a copy reads so many.
+fn stored(at: (u32, u32), picture: &Picture, format: vk::Format) -> Option<PanelTexture> {
+    let Picture { width, height, .. } = *picture;
+    if picture.pixels.len() as u64 != u64::from(width) * u64::from(height) {
+        return None;
+    }
+    let bytes = picture.pixels.iter().map(|pixel| packed(*pixel, format));
+    Some(PanelTexture {
+        at,
+        size: (width, height),
+        bytes: bytes.collect::<Option<Vec<_>>>()?.concat(),
+    })
 }
 
 /// True where a window of this format can show panels.

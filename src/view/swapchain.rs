@@ -39,6 +39,14 @@ struct SwapchainImage {
     drawn: vk::Semaphore,
 }
 
+/// The contents of an image where the drawing into it begins.
+pub(crate) enum Ground<'a> {
+    /// This colour everywhere.
+    Colour([f32; 4]),
+    /// A picture that is copied to all of it.
+    Copy(&'a Buffer, &'a vk::BufferImageCopy),
+}
+
 /// Frames wait for an image no longer than this, so that a compositor that shows nothing does not hang the window.
 const PATIENCE_NS: u64 = 500_000_000;
 
@@ -206,27 +214,65 @@ impl Swapchain {
         self.chain().images[image].drawn
     }
 
-    /// Records the beginning of rendering to an acquired image, all of it cleared; viewport and scissor are the image.
+    /// Records the beginning of rendering to an acquired image over what it holds at first; viewport and scissor are the image.
     ///
     /// # Safety
     /// `cmd` is recording on the device outside rendering. Its submission waits, in the stage of colour output, for the
-    /// semaphore that the image was acquired with.
+    /// semaphore that the image was acquired with. A copy is of all of the image and from within the buffer, the images
+    /// [can be copied to](Self::copied_to), and the host has written the buffer, which outlives the execution.
     pub(crate) unsafe fn begin_rendering(
         &self,
         cmd: vk::CommandBuffer,
         image: usize,
-        clear: [f32; 4],
+        ground: Ground<'_>,
     ) {
         let chain = self.chain();
         let shown = &chain.images[image];
-        // The barrier comes after the wait for the image, which is in this stage.
-        let to_draw =
-            to_be_drawn().src_stage_mask(vk::PipelineStageFlags2::COLOR_ATTACHMENT_OUTPUT);
+        // The first barrier comes after the wait for the image, which is in this stage.
+        let waited = vk::PipelineStageFlags2::COLOR_ATTACHMENT_OUTPUT;
+        let (clear, to_draw) = match ground {
+            Ground::Colour(clear) => (Some(clear), to_be_drawn().src_stage_mask(waited)),
+            Ground::Copy(buffer, copy) => {
+                // SAFETY: the caller vouches for `cmd`, buffer and copy.
+                unsafe { self.copy_ground(cmd, shown.image, (buffer, copy)) };
+                let copied = to_be_drawn()
+                    .src_stage_mask(vk::PipelineStageFlags2::ALL_TRANSFER)
+                    .src_access_mask(vk::AccessFlags2::TRANSFER_WRITE)
+                    .old_layout(vk::ImageLayout::TRANSFER_DST_OPTIMAL);
+                (None, copied)
+            }
+        };
         // SAFETY: the caller vouches for `cmd`; the view is the image's own and covers the render area.
         unsafe {
             barrier(&self.device, cmd, shown.image, to_draw);
             begin_rendering(&self.device, cmd, (shown.view, chain.extent), clear);
             Drawer::new(&self.device, cmd, None).viewport(chain.extent.into());
+        }
+    }
+
+    /// Records a copy to all of an acquired image, whatever it holds.
+    ///
+    /// # Safety
+    /// As of [`begin_rendering`](Self::begin_rendering).
+    unsafe fn copy_ground(
+        &self,
+        cmd: vk::CommandBuffer,
+        image: vk::Image,
+        (buffer, copy): (&Buffer, &vk::BufferImageCopy),
+    ) {
+        let copied_to = vk::ImageLayout::TRANSFER_DST_OPTIMAL;
+        let to_copy = vk::ImageMemoryBarrier2::default()
+            .src_stage_mask(vk::PipelineStageFlags2::COLOR_ATTACHMENT_OUTPUT)
+            .dst_stage_mask(vk::PipelineStageFlags2::ALL_TRANSFER)
+            .dst_access_mask(vk::AccessFlags2::TRANSFER_WRITE)
+            .old_layout(vk::ImageLayout::UNDEFINED)
+            .new_layout(copied_to);
+        let copies = std::slice::from_ref(copy);
+        // SAFETY: the caller vouches for `cmd`, the image, buffer and copy.
+        unsafe {
+            barrier(&self.device, cmd, image, to_copy);
+            let raw = self.device.raw();
+            raw.cmd_copy_buffer_to_image(cmd, buffer.handle(), image, copied_to, copies);
         }
     }
 

@@ -13,9 +13,9 @@ use raw_window_handle::{HasDisplayHandle, HasWindowHandle};
 
 use crate::in_flight::{FRAMES, InFlight};
 use crate::lines::Line;
-use crate::panels::{self, Panel, Panels};
+use crate::panels::{self, Panel, Panels, WrittenPanels};
 use crate::surface::{Surface, Window};
-use crate::swapchain::Swapchain;
+use crate::swapchain::{Ground, Swapchain};
 
 /// A renderer that owns its device and draws into a host's window, with two frames in flight. Colours are blended as they
 /// are stored, on black where the settings name no background.
@@ -166,6 +166,13 @@ impl Windowed {
         self.panels.set(panels, self.swapchain.format());
     }
 
+    /// Shows a picture in the scene's place in the window's next frames that have its size, under their lines and panels, or with
+    /// `None` the scene again. Its alpha does not count, and a window that does not [show panels](Self::shows_panels) does not show
+    /// it. What a frame [computes](Self::show) stays the same.
+    pub fn set_cover(&mut self, picture: Option<&Picture>) {
+        self.panels.set_cover(picture, self.swapchain.format());
+    }
+
     /// True where the window system lets panels be copied into the window. It is known once [`fit`](Self::fit) has given a
     /// size, and false before.
     pub fn shows_panels(&self) -> bool {
@@ -217,9 +224,7 @@ impl Windowed {
         let frame = frames.next();
         overlay.write(device, frame, &seen, attachments)?;
         let panels = panels.write(device, frame, swapchain.copied_to())?;
-        let panels = panels
-            .as_ref()
-            .map(|(buffer, copies)| (*buffer, &copies[..]));
+        let cover = panels.as_ref().and_then(WrittenPanels::cover);
         // SAFETY: the semaphore's last frame was waited for, and with it the wait for the semaphore.
         let Some(image) = (unsafe { swapchain.acquire(frames.acquired()) })? else {
             return Ok(Redraw::Now);
@@ -229,17 +234,26 @@ impl Windowed {
         // until all frames were waited for. The rendering scope is opened and closed here around the draws, on an
         // attachment of the renderer's format, and the submission waits for its image. The buffers of lines and panels are
         // those of this frame's slot, and the host wrote them before the submission; `write` keeps the copies within the
-        // image and apart from each other.
+        // image and the panels' apart from each other, and that of a cover is of all of the image.
         let shown = unsafe {
             let submitted = frames.submit(swapchain.drawn(image), |cmd| {
                 let prepared = renderer.prepare(cmd, scene, None, configured)?;
-                swapchain.begin_rendering(cmd, image, [r, g, b, 1.0]);
-                renderer.draw(cmd, [0.0, 0.0], &prepared)?;
+                match cover {
+                    Some((buffer, copy)) => {
+                        swapchain.begin_rendering(cmd, image, Ground::Copy(buffer, copy));
+                    }
+                    None => {
+                        let ground = Ground::Colour([r, g, b, 1.0]);
+                        swapchain.begin_rendering(cmd, image, ground);
+                        renderer.draw(cmd, [0.0, 0.0], &prepared)?;
+                    }
+                }
                 if !seen.is_empty() {
                     let mut drawer = Drawer::new(device, cmd, None);
                     let size = (camera.width, camera.height);
                     overlay.record(&mut drawer, frame, size, attachments);
                 }
+                let panels = panels.as_ref().and_then(WrittenPanels::panels);
                 swapchain.end_rendering(cmd, image, panels);
                 Ok(())
             });
@@ -268,9 +282,7 @@ impl Windowed {
             ..
         } = self;
         let panels = panels.write(device, frames.next(), swapchain.copied_to())?;
-        let panels = panels
-            .as_ref()
-            .map(|(buffer, copies)| (*buffer, &copies[..]));
+        let panels = panels.as_ref().and_then(WrittenPanels::panels);
         // SAFETY: all frames were waited for, and with them the waits for the semaphore.
         let Some(image) = (unsafe { swapchain.acquire(frames.acquired()) })? else {
             return Ok(Redraw::Now);
@@ -279,7 +291,7 @@ impl Windowed {
         // SAFETY: as in `show`, without a scene.
         let shown = unsafe {
             let submitted = frames.submit(swapchain.drawn(image), |cmd| {
-                swapchain.begin_rendering(cmd, image, [r, g, b, 1.0]);
+                swapchain.begin_rendering(cmd, image, Ground::Colour([r, g, b, 1.0]));
                 swapchain.end_rendering(cmd, image, panels);
                 Ok(())
             });
@@ -297,13 +309,22 @@ impl Windowed {
         clip: &Clip,
         settings: &Settings,
     ) -> Result<Picture> {
-        self.unbroken()?;
         let scene = loaded(self.scene.as_ref())?.clone();
-        self.frames.wait_for_all()?; // nobody else uses the queue
-        let mut headless = Headless::beside(&self.renderer)?;
+        let mut headless = self.beside()?;
         headless.show(scene)?;
         headless.render(camera, clip, settings)?;
         headless.picture()
+    }
+
+    /// Makes a renderer without a window on this window's device, for what is drawn beside its scene, as slices. It has memory of
+    /// its own. Nobody else uses the device's queue while it draws, and no frame is in flight when it is made.
+    ///
+    /// # Errors
+    /// The errors of [`Headless::beside`], and [`Error::Invalid`] after a frame has failed on its way to the window.
+    pub fn beside(&mut self) -> Result<Headless> {
+        self.unbroken()?;
+        self.frames.wait_for_all()?;
+        Headless::beside(&self.renderer)
     }
 
     /// The statistics of the last frame that is known to be drawn and that has computed anything; `None` before the

@@ -4,6 +4,7 @@
 
 mod display;
 mod drag;
+mod faces;
 mod shapes;
 mod text;
 mod viewer;

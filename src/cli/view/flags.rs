@@ -2,6 +2,7 @@
 
 use rara::ClipOp;
 use rara::clip::Expression;
+use rara_base::value::Value;
 use rara_view::viewer::Shown;
 
 use super::shots::quoted;
@@ -26,6 +27,10 @@ pub(super) fn flags(shown: &Shown<'_>) -> String {
     }
     flags.extend_from_slice(shown.notes);
     flags.extend(layer_flags::flags(clips.layers(), cut.section()));
+    let cues = shown.faces.cues();
+    let marks = [("--outline", cues.outline), ("--rim", cues.rim)];
+    let marks = marks.into_iter().filter(|_| !shown.faces.slice);
+    flags.extend(marks.filter_map(|(flag, cue)| Some(format!("{flag}={}", cue?.colour.text()?))));
     flags.extend(settings::flags(settings));
     flags.join(" ")
 }
@@ -40,13 +45,17 @@ pub(super) fn lines(shown: &Shown<'_>) -> String {
              --camera"
         ),
     };
-    let notes = note(shown).map(|note| format!("\n{note}"));
-    lines + &notes.unwrap_or_default()
+    notes(shown).fold(lines, |lines, note| format!("{lines}\n{note}"))
 }
 
-/// A note on what no flags can say.
-pub(super) fn note(shown: &Shown<'_>) -> Option<String> {
-    layer_flags::note(shown.clips.layers(), shown.clips.frame.section())
+/// Notes on what no flags can say.
+pub(super) fn notes(shown: &Shown<'_>) -> impl Iterator<Item = String> {
+    let layers = layer_flags::note(shown.clips.layers(), shown.clips.frame.section());
+    let slice = shown.faces.slice.then(|| {
+        "note: the flags draw the scene and leave out the slice: --slice is for a --section, which places the camera itself"
+            .to_owned()
+    });
+    layers.into_iter().chain(slice)
 }
 
 /// The flags that made the layers of a scene, of which these texts were typed.

@@ -54,7 +54,7 @@ impl Host for Program {
         let file = file.map_or_else(|| self.shots.next(), Path::to_owned);
         shots::save(picture, &shown.camera, &file)?;
         say(shots::wrote(&file, &flags::flags(shown)));
-        flags::note(shown).into_iter().for_each(say);
+        flags::notes(shown).for_each(say);
         Ok(file)
     }
 

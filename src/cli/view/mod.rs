@@ -50,6 +50,9 @@ T prints the times of all stages. A screenshot is the picture that rara render d
 camera, clip and settings. Its camera is saved next to it, for rara render --camera. Neither
 overwrites an existing file.
 
+The window keeps the scene's Gaussians in memory, from which it makes slices and tinted layers. Cut
+faces are drawn when the view rests: while something moves, the window shows the scene without them.
+
 Scripts have an action on each line, and # begins a comment. The window shows the result of an
 action before the next one begins:
   turn DX,DY             degrees          shape on, off, flip, next
@@ -67,6 +70,7 @@ action before the next one begins:
   keys on, off                            numbers on, off
   drop FILE                               repeat N ACTION
   quit                                    undo                 the last change of a clip
+  slice on, off                           edge, rim on, off    marks at the edges of cut faces
   up x, -x, y, -y, z, -z, X,Y,Z           what is up in the picture"))]
 pub(super) struct ViewCommand {
     /// File names of screenshots, .png or .exr; {} becomes the number

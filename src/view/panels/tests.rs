@@ -1,6 +1,6 @@
 use super::*;
 
-fn stored(at: (u32, u32), size: (u32, u32)) -> PanelTexture {
+fn texture(at: (u32, u32), size: (u32, u32)) -> PanelTexture {
     let panel = Panel {
         at,
         picture: Picture::filled(size.0, size.1, [0.0, 0.5, 1.0, 0.0]),
@@ -46,12 +46,12 @@ fn a_picture_without_its_pixels_is_left_out() {
 #[test]
 fn what_lies_beyond_the_window_is_left_out() {
     let window = (100, 50);
-    assert_eq!(within(&stored((8, 8), (20, 10)), window), Some((20, 10)));
-    assert_eq!(within(&stored((90, 45), (20, 10)), window), Some((10, 5)));
-    assert_eq!(within(&stored((100, 0), (20, 10)), window), None);
-    assert_eq!(within(&stored((0, u32::MAX), (20, 10)), window), None);
-    assert_eq!(within(&stored((0, 0), (0, 10)), window), None);
-    let region = copy(16, &stored((90, 45), (20, 10)), (10, 5));
+    assert_eq!(within(&texture((8, 8), (20, 10)), window), Some((20, 10)));
+    assert_eq!(within(&texture((90, 45), (20, 10)), window), Some((10, 5)));
+    assert_eq!(within(&texture((100, 0), (20, 10)), window), None);
+    assert_eq!(within(&texture((0, u32::MAX), (20, 10)), window), None);
+    assert_eq!(within(&texture((0, 0), (0, 10)), window), None);
+    let region = copy(16, &texture((90, 45), (20, 10)), (10, 5));
     assert_eq!(
         (region.buffer_row_length, region.image_extent.width),
         (20, 10)
@@ -60,7 +60,7 @@ fn what_lies_beyond_the_window_is_left_out() {
 
 #[test]
 fn panels_that_share_an_edge_do_not_overlap() {
-    let first = stored((10, 10), (20, 10));
+    let first = texture((10, 10), (20, 10));
     for (at, meets) in [
         ((30, 10), false),
         ((29, 19), true),
@@ -68,8 +68,20 @@ fn panels_that_share_an_edge_do_not_overlap() {
         ((0, 0), false),
         ((0, 1), true),
     ] {
-        let other = stored(at, (11, 10));
+        let other = texture(at, (11, 10));
         assert_eq!(overlap(&first, &other), meets, "{at:?}");
         assert_eq!(overlap(&other, &first), meets, "{at:?}");
     }
+}
+
+#[test]
+fn a_cover_is_stored_without_its_alpha() {
+    let mut panels = Panels::default();
+    let picture = Picture::filled(3, 2, [0.0, 0.5, 1.0, 0.25]);
+    panels.set_cover(Some(&picture), vk::Format::R8G8B8A8_UNORM);
+    let cover = panels.cover.as_ref().expect("a cover");
+    assert_eq!((cover.at, cover.size), ((0, 0), (3, 2)));
+    assert_eq!(cover.bytes, [0, 128, 255, 255].repeat(6));
+    panels.set_cover(Some(&picture), vk::Format::R16G16B16A16_SFLOAT);
+    assert!(panels.cover.is_none());
 }

@@ -57,6 +57,12 @@ pub enum Action {
     Edit(Edit),
     /// Outline the shapes that clip, or not; whichever it is not where that is not said.
     Outline(Option<bool>),
+    /// Show the slice on the faces of the held shape, or not, likewise.
+    Slice(Option<bool>),
+    /// Draw a line around cut faces, or not, likewise.
+    Edge(Option<bool>),
+    /// Tint cut faces along their edges, or not, likewise.
+    Rim(Option<bool>),
     /// Show the list of keys, or not, likewise.
     Keys(Option<bool>),
     /// Show the clip's numbers, or not, likewise.
@@ -233,11 +239,14 @@ impl FromStr for Action {
                 "" => return Err("edit takes next, frame, release, or a layer".into()),
                 which => Edit::Layer(Which::Typed(which.into())),
             }),
-            "outline" | "keys" | "numbers" => {
+            "outline" | "slice" | "edge" | "rim" | "keys" | "numbers" => {
                 let on = switch(rest);
                 let on = Some(on.ok_or_else(|| format!("{verb} {rest}: on or off is possible"))?);
                 match verb {
                     "outline" => Self::Outline(on),
+                    "slice" => Self::Slice(on),
+                    "edge" => Self::Edge(on),
+                    "rim" => Self::Rim(on),
                     "keys" => Self::Keys(on),
                     _ => Self::Numbers(on),
                 }
@@ -266,7 +275,7 @@ impl FromStr for Action {
             other => {
                 return Err(format!(
                     "\"{other}\" is not an action; there are turn, shift, zoom, move, camera, clip, up, shape, plane, drag, tilt, \
-                     scale, undo, layer, edit, outline, keys, numbers, drop, mode, screenshot, resize, minimise, \
+                     scale, undo, layer, edit, outline, slice, edge, rim, keys, numbers, drop, mode, screenshot, resize, minimise, \
                      restore, timings, flags, repeat and quit"
                 ));
             }

@@ -21,7 +21,7 @@ use super::failure::Failure;
 use super::host::Host;
 use super::input::Input;
 use super::lost;
-use super::scenery::Manner;
+use super::scenery::{FaceView, Manner};
 use super::stage::{AppEvent, Viewer};
 use crate::Windowed;
 
@@ -123,6 +123,7 @@ impl App {
         let manner = Manner {
             settings: desc.settings,
             up: desc.up,
+            faces: FaceView::default(),
             outlined: desc.outlined,
             text: desc.text,
         };

@@ -107,6 +107,32 @@ impl ClipEditor {
         shapes[self.held.min(shapes.len() - 1)]
     }
 
+    /// The held shape where its clip keeps what every shape keeps, and what else is in it; `None` where it is within a larger
+    /// expression, or where its clip is off.
+    pub(super) fn held_apart(&self) -> Option<(Shape, Vec<Expression>)> {
+        let mut others = self.expressions().to_vec();
+        if self.op != ClipOp::And && others.len() > 1 {
+            return None;
+        }
+        // Shapes come first, so that the number of the held shape is that of its expression.
+        match others.get(self.held)? {
+            Expression::Shape(shape) => {
+                let shape = *shape;
+                others.remove(self.held);
+                Some((shape, others))
+            }
+            _ => None,
+        }
+    }
+
+    /// The shapes of a section that also cut layers with clips of their own on a face of the held shape; none if that is a section's.
+    pub(super) fn section_beside_held(&self) -> &[Expression] {
+        match self.held < self.of_section {
+            true => &[],
+            false => self.section(),
+        }
+    }
+
     /// The middle of the held shape; of planes and slabs the point nearest to the middle of the scene when it was taken hold
     /// of, which moves with them.
     pub(super) fn middle(&self) -> DVec3 {

@@ -6,7 +6,8 @@ use super::failure::Failure;
 use super::loading::Loading;
 use super::outlines;
 use super::overlay::OverlayScene;
-use super::scenery::{Manner, Scenery};
+use super::scenery::{FaceView, Scenery};
+use super::slices::FacePlan;
 use super::stage::Viewer;
 use super::text::ProgressBar;
 use super::title;
@@ -38,15 +39,16 @@ impl Viewer {
             radius,
             ..
         } = &mut self.scenery;
-        let Manner {
-            outlined, settings, ..
-        } = &self.manner;
         clips.apply(&mut self.windowed)?;
-        self.windowed.set_lines(match outlined {
+        self.windowed.set_lines(match self.manner.outlined {
             true => outlines::lines(clips, &camera, (*centre, *radius)),
             false => Vec::new(),
         });
         let clip = clips.frame.clip();
+        let plan = FacePlan::new(&self.scenery, &self.manner, &camera);
+        let wanted = plan.as_ref().ok().and_then(Option::as_ref);
+        let is_covered = self.faces.uncover(&mut self.windowed, wanted);
+        let settings = &self.manner.settings;
         let is_said = std::mem::replace(&mut self.compiling, false);
         if !is_said && self.windowed.compiles(&camera, &clip, settings)? {
             self.compiling = true;
@@ -68,8 +70,15 @@ impl Viewer {
         if self.unsettled {
             self.shown_at = Some(now);
         }
+        self.faces.announced &= redraw != Redraw::WhenIdle;
         if redraw == Redraw::NotNeeded {
             self.overlay.scene_is_seen();
+            self.tell_of_faces(plan.as_ref().err().copied());
+            if let Ok(Some(plan)) = plan
+                && !is_covered
+            {
+                self.cover(plan)?;
+            }
         }
         // The numbers that are known now may be others than those over the picture.
         self.dirty |= redraw == Redraw::NotNeeded && self.overlay.is_old(&self.seen(size));
@@ -78,6 +87,35 @@ impl Viewer {
             self.entitle();
         }
         Ok(())
+    }
+
+    /// Shows cut faces with the next frame, since the view rests.
+    fn cover(&mut self, plan: FacePlan) -> Result<(), Failure> {
+        self.dirty = true;
+        self.shown_at = None; // the next frame does not follow at once
+        let cut = (plan, &self.scenery.scene);
+        let covered = self.faces.cover(&mut self.windowed, cut);
+        match covered.map_err(Failure::from) {
+            // The window goes on without them.
+            Err(failure) if failure.is_of_the_scene() => {
+                self.manner.faces = FaceView::default();
+                self.warn(failure);
+                Ok(())
+            }
+            outcome => outcome,
+        }
+    }
+
+    /// Tells once why there are no cut faces, if they are asked for.
+    fn tell_of_faces(&mut self, why: Option<&'static str>) {
+        self.faces.announced &= why.is_none();
+        if std::mem::replace(&mut self.faces.told, why) == why {
+            return;
+        }
+        if let Some(why) = why {
+            self.overlay.tell(why.into());
+            self.dirty = true;
+        }
     }
 
     /// Shows the last frame once more, or nothing before the first, and over it that the next one has to compile shaders.
@@ -119,9 +157,10 @@ impl Viewer {
             clips: self.loaded.then_some(&self.scenery.clips),
             mode: self.manner.settings.mode,
             stats: self.windowed.stats(),
-            progress: match self.compiling {
-                true => Some(("compiling shaders".into(), ProgressBar::Moving(0.5))),
-                false => self.loading.as_ref().map(Loading::progress),
+            progress: match (self.compiling, self.faces.announced) {
+                (true, _) => Some(("compiling shaders".into(), ProgressBar::Moving(0.5))),
+                (_, true) => Some(("drawing cut faces".into(), ProgressBar::Moving(0.5))),
+                _ => self.loading.as_ref().map(Loading::progress),
             },
             size,
             scale_factor: self.scale_factor,

@@ -10,7 +10,7 @@ use rara::{Camera, FrameStats, Picture, Settings};
 use super::failure::Failure;
 use super::layers::Clips;
 use super::loading::Load;
-use super::scenery::SceneView;
+use super::scenery::{FaceView, SceneView};
 
 /// What a viewer shows.
 #[derive(Debug)]
@@ -21,6 +21,8 @@ pub struct Shown<'a> {
     pub clips: &'a Clips,
     /// How it is drawn.
     pub settings: &'a Settings,
+    /// The parts of cut faces that are in the picture.
+    pub faces: FaceView,
     /// What the program has noted of the scene.
     pub notes: &'a [String],
 }

@@ -32,6 +32,7 @@ Keys:
   Page Up, Page Down           move the held shape along its normal or from the eye (Shift: a tenth)
   J K                          make the held shape smaller or larger
   4 5 6                        put a plane, a box or a sphere in the held shape's place
+  7 8 9                        slice on the held face, line around cut faces, tint along them
   Backspace or Ctrl+Z          take back the last change of a clip
   B                            outlines of the shapes on or off
   F1 to F9                     layer 1 to 9 on or off (Shift: its opacity; Ctrl: its tint)
@@ -239,6 +240,9 @@ fn letter(text: &str, shift: bool) -> Option<Action> {
         "4" => held(GripAction::Become(Kind::Plane)),
         "5" => held(GripAction::Become(Kind::Box)),
         "6" => held(GripAction::Become(Kind::Sphere)),
+        "7" => Action::Slice(None),
+        "8" => Action::Edge(None),
+        "9" => Action::Rim(None),
         "+" | "=" => Action::Zoom(1.0),
         "-" => Action::Zoom(-1.0),
         "p" => held(GripAction::Toggle),

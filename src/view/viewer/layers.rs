@@ -4,14 +4,15 @@ use std::mem::{Discriminant, discriminant};
 use std::time::{Duration, Instant};
 
 use glam::DVec3;
-use rara::{Camera, ClipOp};
+use rara::{Camera, Clip, ClipOp, Layer, LayerState, Scene};
 
 use super::action::{Edit, GripAction, Step, Which};
 use super::cut::ClipEditor;
 use super::failure::Failure;
 use crate::Windowed;
 use rara::clip::Expression;
-use rara::scene::layers::{LayerClip, ListedState, LoadedLayer, Tint};
+use rara::scene::layers::{LayerClip, ListedState, LoadedLayer, SceneLayers, Tint};
+use rara_shots::{Face, faces};
 
 /// The frame's clip and the layers.
 #[derive(Debug, Clone)]
@@ -37,6 +38,16 @@ struct Past {
     own: Vec<Option<ClipEditor>>,
     /// The kind of what has changed them, if more of it belongs to it, and when it did so last.
     by: (Option<Discriminant<GripAction>>, Instant),
+}
+
+/// The state of each layer of a scene, and its own clip.
+pub(super) type ShownLayers = Vec<(LayerState, Option<Clip>)>;
+
+/// The faces of a clip, and how the scene's layers are shown on them.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct CutFaces {
+    pub(super) faces: Vec<Face>,
+    pub(super) layers: ShownLayers,
 }
 
 /// Changes that can be undone.
@@ -66,6 +77,21 @@ pub struct NamedLayer {
     own: Option<ClipEditor>,
     /// What is listed of each of them, with clips as they can be edited.
     pub listed: Vec<ListedState>,
+}
+
+impl CutFaces {
+    /// The scene of these layers as they are shown.
+    pub(super) fn scene<'a>(&self, read: &'a SceneLayers) -> Scene<'a> {
+        let layers = read.layers.iter().zip(&self.layers);
+        let layers = layers.map(|(layer, (state, clip))| {
+            let made = Layer::new(&layer.name, &layer.gaussians).with(*state);
+            match clip {
+                Some(clip) => made.clipped(clip.clone()),
+                None => made,
+            }
+        });
+        layers.collect()
+    }
 }
 
 impl NamedLayer {
@@ -317,6 +343,68 @@ impl Clips {
             }
         }
         Ok(())
+    }
+
+    /// The faces that the frame's clip cuts and a camera sees, and how these layers are shown; `None` where it is off, where other
+    /// shapes than planes, slabs and boxes cut, and where shapes do not cut together.
+    pub(super) fn faces(&self, read: &[LoadedLayer], camera: &Camera) -> Option<CutFaces> {
+        if !self.frame.on {
+            return None;
+        }
+        let section = self.frame.section();
+        Some(CutFaces {
+            faces: faces(&self.frame.clip(), camera)?,
+            layers: self.each(read, |layer| {
+                (layer.visible, layer.clip(section).map(|clip| clip.clip()))
+            }),
+        })
+    }
+
+    /// The faces of the held shape that a camera sees, and how these layers are shown on them: if the shape is of the frame's clip,
+    /// all layers that are shown, and otherwise those whose clip it is of. `None` where the held shape is no plane, slab or box, or
+    /// does not cut together with others.
+    pub(super) fn held_faces(&self, read: &[LoadedLayer], camera: &Camera) -> Option<CutFaces> {
+        let (shape, others) = self.edited()?.held_apart()?;
+        let mut faces = faces(&shape.clip(), camera)?;
+        let mut beside: Vec<Clip> = others.iter().map(Expression::clip).collect();
+        let layers = match self.edited {
+            None => {
+                let section = self.frame.section_beside_held();
+                self.each(read, |layer| {
+                    (layer.visible, layer.clip(section).map(|clip| clip.clip()))
+                })
+            }
+            Some(edited) => {
+                beside.extend(self.frame.section().iter().map(Expression::clip));
+                let edited = &self.layers[edited];
+                self.each(read, |layer| {
+                    (layer.visible && std::ptr::eq(layer, edited), None)
+                })
+            }
+        };
+        for face in &mut faces {
+            let all = beside.iter().chain([&face.rest]).cloned();
+            face.rest = Clip::joined(all, ClipOp::And);
+        }
+        Some(CutFaces { faces, layers })
+    }
+
+    /// The state and the clip of each of these layers, where `shown` says whether it is visible and what clips it.
+    fn each(
+        &self,
+        read: &[LoadedLayer],
+        shown: impl Fn(&NamedLayer) -> (bool, Option<Clip>),
+    ) -> ShownLayers {
+        let mut all: Vec<_> = read.iter().map(|layer| (layer.state, None)).collect();
+        for layer in &self.layers {
+            let (visible, clip) = shown(layer);
+            for &place in &layer.places {
+                let (state, own) = &mut all[place];
+                *state = state.visible(visible).opacity(layer.opacity);
+                own.clone_from(&clip);
+            }
+        }
+        all
     }
 
     /// A few words for the title: which shape of which clip is held, and which layers are hidden.

@@ -107,6 +107,7 @@ impl Viewer {
     fn after_upload(&mut self, uploaded: rara::Result<()>) -> Result<(), Failure> {
         self.loaded = !self.windowed.layers().is_empty();
         self.last = None;
+        self.faces.forget(&mut self.windowed);
         Ok(uploaded?)
     }
 

@@ -7,8 +7,8 @@ use glam::DVec3;
 use rara::clip::Expression;
 use rara::scene::layers::{self, SceneLayers, Tint};
 use rara::scene::trained_folder;
-use rara::{Camera, ClipOp, Gaussians, Scene, Settings};
-use rara_shots::{Framing, Lens, UP, Visible};
+use rara::{Camera, ClipOp, Cue, Cues, Gaussians, Scene, Settings};
+use rara_shots::{Framing, Lens, OUTLINE_WIDTH, RIM_WIDTH, UP, Visible};
 
 use super::cut::ClipEditor;
 use super::failure::Failure;
@@ -40,12 +40,39 @@ pub(super) struct Scenery {
     pub(super) notes: Vec<String>,
 }
 
+/// The parts of cut faces that are shown once the view rests.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct FaceView {
+    /// True for the slice on the faces of the held shape, in place of the scene behind them.
+    pub slice: bool,
+    /// True for a line around cut faces.
+    pub edge: bool,
+    /// True for a tint along their edges.
+    pub rim: bool,
+}
+
+const EDGE: [f32; 3] = [1.0, 0.9, 0.2];
+const RIM: [f32; 3] = [1.0, 0.5, 0.1];
+
+impl FaceView {
+    /// The marks at the edges of cut surfaces.
+    pub fn cues(&self) -> Cues {
+        let mut cues = Cues::default();
+        let cue = |colour, width| Cue { colour, width };
+        cues.outline = self.edge.then_some(cue(EDGE, OUTLINE_WIDTH));
+        cues.rim = self.rim.then_some(cue(RIM, RIM_WIDTH));
+        cues
+    }
+}
+
 /// What a description says of a viewer, whatever the scene.
 #[derive(Debug)]
 pub(super) struct Manner {
     pub(super) settings: Settings,
     /// The direction that is up in the pictures of scenes that no camera comes with, if it is said.
     pub(super) up: Option<DVec3>,
+    /// The parts of cut faces that are asked for.
+    pub(super) faces: FaceView,
     /// True when the shapes that clip are outlined.
     pub(super) outlined: bool,
     /// True when there is text over the picture without asking for it.

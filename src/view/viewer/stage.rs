@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use glam::DVec3;
 use rara::clip::NamedClip;
-use rara::{Camera, Clip, Settings};
+use rara::{Camera, Clip, Picture, Settings};
 use winit::dpi::PhysicalSize;
 use winit::event_loop::EventLoopProxy;
 use winit::window::Window;
@@ -18,7 +18,8 @@ use super::host::{Host, Shown};
 use super::input::KEYS;
 use super::loading::Loading;
 use super::overlay::Overlay;
-use super::scenery::{Manner, SceneView, Scenery};
+use super::scenery::{FaceView, Manner, SceneView, Scenery};
+use super::slices::{FacePlan, ShownFaces};
 use super::viewpoint::{Viewpoint, Walk};
 use crate::Windowed;
 use rara_shots::UP;
@@ -53,6 +54,7 @@ pub(super) struct Viewer {
     pub(super) overlay: Overlay,
     /// True where the window says that the next frame has to compile shaders.
     pub(super) compiling: bool,
+    pub(super) faces: ShownFaces,
     /// The last frame of the scene that was shown.
     pub(super) last: Option<(Camera, Clip, Settings)>,
     pub(super) view: usize,
@@ -99,6 +101,7 @@ impl Viewer {
             warnings: 0,
             overlay: Overlay::new(manner.text),
             compiling: false,
+            faces: ShownFaces::default(),
             last: None,
             manner,
             scenery,
@@ -237,7 +240,10 @@ impl Viewer {
             }
             Action::LayerTint(which, tint) => self.tint(&which, tint)?,
             Action::Edit(edit) => self.scenery.clips.edit(&edit)?,
-            Action::Outline(on) => self.manner.outlined = on.unwrap_or(!self.manner.outlined),
+            Action::Outline(on) => switch(&mut self.manner.outlined, on),
+            Action::Slice(on) => switch(&mut self.manner.faces.slice, on),
+            Action::Edge(on) => switch(&mut self.manner.faces.edge, on),
+            Action::Rim(on) => switch(&mut self.manner.faces.rim, on),
             Action::Keys(on) if self.visible() && !self.windowed.shows_panels() => {
                 if on != Some(false) {
                     self.host.say(&KEYS);
@@ -281,13 +287,20 @@ impl Viewer {
         (self.size.0.max(1), self.size.1.max(1))
     }
 
+    /// Draws what there is to see by a camera, whether the window shows it or not.
+    fn picture(&mut self, camera: &Camera) -> Result<Picture, Failure> {
+        self.scenery.clips.apply(&mut self.windowed)?;
+        if let Ok(Some(plan)) = FacePlan::new(&self.scenery, &self.manner, camera) {
+            return Ok(plan.picture(&mut self.windowed, &self.scenery.scene)?);
+        }
+        let clip = self.scenery.clips.frame.clip();
+        let settings = &self.manner.settings;
+        Ok(self.windowed.picture(camera, &clip, settings)?)
+    }
+
     fn screenshot(&mut self, path: Option<PathBuf>) -> Result<(), Failure> {
         let camera = self.viewpoint.camera(self.picture_size());
-        self.scenery.clips.apply(&mut self.windowed)?;
-        let clip = self.scenery.clips.frame.clip();
-        let picture = self
-            .windowed
-            .picture(&camera, &clip, &self.manner.settings)?;
+        let picture = self.picture(&camera)?;
         let shown = shown(camera, &self.scenery, &self.manner);
         let file = self.host.screenshot(&picture, path.as_deref(), &shown)?;
         self.overlay.tell(format!("wrote {}", file.display()));
@@ -333,10 +346,17 @@ impl Viewer {
 
 /// What there is to see by a camera.
 fn shown<'a>(camera: Camera, scenery: &'a Scenery, manner: &'a Manner) -> Shown<'a> {
+    let plan = FacePlan::new(scenery, manner, &camera);
     Shown {
         camera,
         clips: &scenery.clips,
         settings: &manner.settings,
+        faces: plan.map_or_else(|_| FaceView::default(), |_| manner.faces),
         notes: &scenery.notes,
     }
+}
+
+/// Switches something on or off, whichever it is not where that is not said.
+fn switch(is: &mut bool, on: Option<bool>) {
+    *is = on.unwrap_or(!*is);
 }

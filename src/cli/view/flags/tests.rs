@@ -4,7 +4,7 @@ use crate::settings::SettingsArgs;
 use clap::{Args as _, FromArgMatches as _};
 use glam::{DVec2, DVec3};
 use rara::{Camera, Plane, Precision, Settings};
-use rara_view::viewer::{ClipEditor, Clips, GripAction};
+use rara_view::viewer::{ClipEditor, Clips, FaceView, GripAction};
 
 /// A shell's words: blanks are between them, but not within single quotes.
 fn words(line: &str) -> Vec<String> {
@@ -49,6 +49,7 @@ fn shown<'a>(camera: Camera, clips: &'a Clips, settings: &'a Settings) -> Shown<
         camera,
         clips,
         settings,
+        faces: FaceView::default(),
         notes: &[],
     }
 }
@@ -68,6 +69,20 @@ fn what_made_the_layers_comes_before_what_changed_them() {
     };
     let written = "--select='bone=label in 3' --place=a=1,2,3 --mode none";
     assert_eq!(flags(&shown), written);
+}
+
+#[test]
+fn marks_of_cut_faces_are_said_and_slices_noted() {
+    let (clips, settings) = meant("--clip plane:0,0,1,0 --mode exact");
+    let mut shown = shown(camera(), &clips, &settings);
+    (shown.faces.edge, shown.faces.rim) = (true, true);
+    let written = "--clip plane:0,0,1,0 --outline=1,0.9,0.2 --rim=1,0.5,0.1 --mode exact";
+    assert_eq!(flags(&shown), written);
+    assert_eq!(notes(&shown).count(), 0);
+    shown.faces.slice = true;
+    assert_eq!(flags(&shown), "--clip plane:0,0,1,0 --mode exact");
+    let lines = lines(&shown);
+    assert!(lines.contains("leave out the slice"), "{lines}");
 }
 
 #[test]

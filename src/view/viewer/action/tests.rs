@@ -43,6 +43,9 @@ fn what_is_written_is_what_is_done() {
         Action::Edit(Edit::Layer(which("skin")))
     );
     assert_eq!(parsed("outline off"), Action::Outline(Some(false)));
+    assert_eq!(parsed("slice on"), Action::Slice(Some(true)));
+    assert_eq!(parsed("edge off"), Action::Edge(Some(false)));
+    assert_eq!(parsed("rim on"), Action::Rim(Some(true)));
     assert_eq!(parsed("keys on"), Action::Keys(Some(true)));
     assert_eq!(parsed("numbers off"), Action::Numbers(Some(false)));
     assert_eq!(parsed("drop a b.ply"), Action::Drop("a b.ply".into()));
@@ -86,6 +89,7 @@ fn what_means_nothing_is_refused_with_what_would() {
         ("layer skin tint rouge", "no colour 'rouge'"),
         ("edit", "next, frame"),
         ("outline", "on or off"),
+        ("slice", "slice : on or off"),
         ("keys 1", "keys 1: on or off"),
         ("drop", "takes a file"),
         ("turn 5", "expected 2 numbers"),

@@ -70,3 +70,29 @@ fn a_shape_that_would_overflow_stays_where_it_was() {
     cut.place(&huge);
     assert_eq!(cut.clip(), before);
 }
+
+#[test]
+fn the_held_shape_stands_apart_where_all_must_keep_a_point() {
+    let mut two = cut(&["any(sphere:0,0,0,1)", "plane:0,1,0,0"]);
+    let (shape, others) = two.held_apart().expect("a plane");
+    assert_eq!((shape.solid().name(), others.len()), ("plane", 1));
+    two.next();
+    assert!(two.held_apart().is_none(), "it is within an expression");
+    let typed = ["plane:0,1,0,0", "plane:1,0,0,0"].map(|text| text.parse().unwrap());
+    let either = ClipEditor::new(typed.to_vec(), ClipOp::Or, CENTRE);
+    assert!(either.held_apart().is_none());
+    let one = ClipEditor::new(typed[..1].to_vec(), ClipOp::Or, CENTRE);
+    assert!(one.held_apart().is_some());
+    let mut off = cut(&["plane:0,1,0,0"]);
+    off.on = false;
+    assert!(off.held_apart().is_none());
+}
+
+#[test]
+fn a_held_section_leaves_the_other_layers_alone() {
+    let [plane, sphere] = ["plane:0,1,0,0", "sphere:0,0,0,1"].map(|text| text.parse().unwrap());
+    let mut cut = ClipEditor::of_section(vec![plane], vec![sphere], CENTRE);
+    assert!(cut.section_beside_held().is_empty());
+    cut.next();
+    assert_eq!(cut.section_beside_held().len(), 1);
+}

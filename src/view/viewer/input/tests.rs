@@ -41,6 +41,7 @@ fn switches_do_not_repeat_but_moves_do() {
         press(&mut input, "2", false),
         Some(Action::Mode(Mode::Rara))
     );
+    assert_eq!(press(&mut input, "7", false), Some(Action::Slice(None)));
     assert_eq!(press(&mut input, "?", false), None);
 }
 

@@ -215,9 +215,21 @@ fn a_bar_moves_until_the_scene_is_there() {
     let window = client.window();
     // The driver keeps nothing that the first cut needs, and the window says so before it stands still.
     client.press(window, 33); // P
-    until("a bar while shaders are compiled", || {
-        (!of_colour(&display.corner(400, 200), FILLED).is_empty()).then_some(())
+    let seen = until("a bar while shaders are compiled", || {
+        let seen = display.corner(400, 200);
+        (!of_colour(&seen, FILLED).is_empty()).then_some(seen)
     });
+    // The bar is at the bottom, and above it the last picture stays.
+    let bar = of_colour(&seen, PAPER);
+    let top = bar.iter().map(|(_, y)| *y).min().expect("a bar");
+    let above = |picture: &Picture| Picture {
+        height: top,
+        pixels: picture.pixels[..(top * picture.width) as usize].to_vec(),
+        ..*picture
+    };
+    assert!(top > 100, "the bar begins at {top}");
+    let off = apart(&above(&seen), &above(&drawn));
+    assert!(off <= 1.01, "the last picture is off by {off}/255");
     until("the cut", || {
         let seen = display.corner(400, 200);
         (of_colour(&seen, FILLED).is_empty() && apart(&seen, &drawn) > 1.01).then_some(())

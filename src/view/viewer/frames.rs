@@ -39,12 +39,12 @@ impl Viewer {
             radius,
             ..
         } = &mut self.scenery;
-        clips.apply(&mut self.windowed)?;
-        self.windowed.set_lines(match self.manner.outlined {
+        let before = clips.apply(&mut self.windowed)?;
+        let clip = clips.frame.clip();
+        let lines = match self.manner.outlined {
             true => outlines::lines(clips, &camera, (*centre, *radius)),
             false => Vec::new(),
-        });
-        let clip = clips.frame.clip();
+        };
         let plan = FacePlan::new(&self.scenery, &self.manner, &camera);
         let wanted = plan.as_ref().ok().and_then(Option::as_ref);
         let is_covered = self.faces.uncover(&mut self.windowed, wanted);
@@ -53,8 +53,10 @@ impl Viewer {
         if !is_said && self.windowed.compiles(&camera, &clip, settings)? {
             self.compiling = true;
             self.shown_at = None; // the next frame does not follow at once
+            self.scenery.clips.take_back(&mut self.windowed, before)?;
             return self.say_that_shaders_compile(size);
         }
+        self.windowed.set_lines(lines);
         let frame = (camera, clip, *settings);
         let redraw = self.windowed.show(&frame.0, &frame.1, &frame.2)?;
         self.last = Some(frame);

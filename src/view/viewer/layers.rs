@@ -328,11 +328,14 @@ impl Clips {
         Ok(())
     }
 
-    /// Makes the window's scene what is wanted of its layers.
-    pub(super) fn apply(&mut self, windowed: &mut Windowed) -> rara::Result<()> {
+    /// Makes the window's scene what is wanted of its layers. Returns how these were shown before, if that has changed.
+    pub(super) fn apply(&mut self, windowed: &mut Windowed) -> rara::Result<Option<ShownLayers>> {
         if !std::mem::take(&mut self.changed) {
-            return Ok(());
+            return Ok(None);
         }
+        let before = windowed.layers().iter();
+        let before = before.map(|layer| (layer.state(), layer.clip().cloned()));
+        let before = before.collect();
         for layer in &self.layers {
             let clip = layer.clip(self.frame.section()).map(|clip| clip.clip());
             for &place in &layer.places {
@@ -341,6 +344,20 @@ impl Clips {
                 windowed.set_layer_state(place, state)?;
                 windowed.set_layer_clip(place, clip.clone())?;
             }
+        }
+        Ok(Some(before))
+    }
+
+    /// Shows the window's layers as they were before, until [`apply`](Self::apply) is called again.
+    pub(super) fn take_back(
+        &mut self,
+        windowed: &mut Windowed,
+        before: Option<ShownLayers>,
+    ) -> rara::Result<()> {
+        self.changed |= before.is_some();
+        for (place, (state, clip)) in before.into_iter().flatten().enumerate() {
+            windowed.set_layer_state(place, state)?;
+            windowed.set_layer_clip(place, clip)?;
         }
         Ok(())
     }

@@ -328,7 +328,7 @@ fn placements() {
     assert!(RaraPlacement { position, ..given }.placement().is_err());
     let error = RaraPlacement { rotation, ..given }.placement();
     let text = error.expect_err("no rotation").to_string();
-    assert!(text.contains("a rotation that is not zero"), "{text}");
+    assert!(text.contains("its rotation cannot be zero"), "{text}");
 }
 
 #[test]

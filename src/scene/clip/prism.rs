@@ -46,7 +46,7 @@ impl Prism {
             ));
         };
         if let Some([low, high]) = heights
-            && !(low < high)
+            && low.partial_cmp(&high) != Some(std::cmp::Ordering::Less)
         {
             return invalid(format!(
                 "from {low} to {high}: the first height is below the second"

@@ -50,6 +50,7 @@ impl Expression {
     }
 
     /// The prism of a text that begins as one, perhaps with a `!` before it.
+    #[cfg(all(feature = "formats", feature = "json"))] // for layers' regions
     pub(crate) fn prism(text: &str) -> Option<Result<Self>> {
         let bare = text.trim().trim_start_matches('!').trim_start();
         let begins = bare.strip_prefix(POLYGON)?.trim_start();

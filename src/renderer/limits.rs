@@ -33,7 +33,8 @@ setters! {
         /// The settings that frames have, each with every kind of clip: modes, rasters, what is shown and with which laws.
         pub settings: Vec<Settings>,
         /// Pairs of tile and splat, for which there is then exactly this room: a frame with more has coarse lists, the same
-        /// picture but slower, and [`fell_back`](super::Renderer::fell_back) says so.
+        /// picture in two to six times the time, or far more where there is room for fewer pairs than Gaussians, and
+        /// [`fell_back`](super::Renderer::fell_back) says so.
         /// [`SceneBuffers::estimated_pairs`](crate::SceneBuffers::estimated_pairs) tells a camera's. `None` for the usual room:
         /// 2 a Gaussian and 64 a tile of 8x8 pixels; frames with more then have it grow, which allocates.
         pub pairs: Option<u32>,

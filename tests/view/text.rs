@@ -232,6 +232,9 @@ fn a_bar_moves_until_the_scene_is_there() {
     assert!(off <= 1.01, "the last picture is off by {off}/255");
     until("the cut", || {
         let seen = display.corner(400, 200);
+        let above = above(&seen);
+        let is_blank = above.pixels.iter().all(|pixel| *pixel == above.pixels[0]);
+        assert!(!is_blank, "a picture stays until all shaders are compiled");
         (of_colour(&seen, FILLED).is_empty() && apart(&seen, &drawn) > 1.01).then_some(())
     });
     client.press(window, 9); // Escape

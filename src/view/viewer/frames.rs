@@ -15,6 +15,9 @@ use crate::Redraw;
 
 /// The title changes no more often than this, since each change costs the window system a message.
 const TITLE_PAUSE: Duration = Duration::from_millis(200);
+/// The frames over which the window says that shaders are compiled, from each frame that needed it on: the first frames in a new way
+/// are drawn once more from nothing, which needs further shaders.
+const COMPILING: u32 = 4;
 /// The most times between frames that are kept.
 const INTERVALS: usize = 10_000;
 
@@ -25,8 +28,8 @@ impl Viewer {
             (self.dirty, self.unsettled) = (false, false);
             return Ok(());
         };
-        self.lay_over(size);
         if !self.loaded {
+            self.lay_over(size);
             let background = self.manner.settings.background.unwrap_or_default();
             let redraw = self.windowed.show_panels(background)?;
             (self.dirty, self.unsettled) = (redraw == Redraw::Now, false);
@@ -48,19 +51,24 @@ impl Viewer {
         let plan = FacePlan::new(&self.scenery, &self.manner, &camera);
         let wanted = plan.as_ref().ok().and_then(Option::as_ref);
         let is_covered = self.faces.uncover(&mut self.windowed, wanted);
-        let settings = &self.manner.settings;
-        let is_said = std::mem::replace(&mut self.compiling, false);
-        if !is_said && self.windowed.compiles(&camera, &clip, settings)? {
-            self.compiling = true;
+        let settings = self.manner.settings;
+        if self.windowed.compiles(&camera, &clip, &settings)? {
             self.shown_at = None; // the next frame does not follow at once
-            self.scenery.clips.take_back(&mut self.windowed, before)?;
-            return self.say_that_shaders_compile(size);
+            if std::mem::replace(&mut self.compiling, COMPILING) == 0 {
+                self.scenery.clips.take_back(&mut self.windowed, before)?;
+                return self.say_that_shaders_compile(size);
+            }
         }
+        self.lay_over(size);
         self.windowed.set_lines(lines);
-        let frame = (camera, clip, *settings);
+        let frame = (camera, clip, settings);
         let redraw = self.windowed.show(&frame.0, &frame.1, &frame.2)?;
         self.last = Some(frame);
-        self.dirty = redraw == Redraw::Now || is_said;
+        self.compiling = match redraw {
+            Redraw::NotNeeded => 0,
+            _ => self.compiling.saturating_sub(1),
+        };
+        self.dirty = redraw == Redraw::Now;
         self.unsettled = redraw == Redraw::WhenIdle;
         let now = Instant::now();
         // A frame that only asks for numbers does not count, since nobody waits for it.
@@ -159,7 +167,7 @@ impl Viewer {
             clips: self.loaded.then_some(&self.scenery.clips),
             mode: self.manner.settings.mode,
             stats: self.windowed.stats(),
-            progress: match (self.compiling, self.faces.announced) {
+            progress: match (self.compiling > 0, self.faces.announced) {
                 (true, _) => Some(("compiling shaders".into(), ProgressBar::Moving(0.5))),
                 (_, true) => Some(("drawing cut faces".into(), ProgressBar::Moving(0.5))),
                 _ => self.loading.as_ref().map(Loading::progress),

@@ -52,8 +52,8 @@ pub(super) struct Viewer {
     /// How often something has failed that the window outlives.
     pub(super) warnings: u32,
     pub(super) overlay: Overlay,
-    /// True where the window says that the next frame has to compile shaders.
-    pub(super) compiling: bool,
+    /// For how many frames the window still says that shaders are compiled.
+    pub(super) compiling: u32,
     pub(super) faces: ShownFaces,
     /// The last frame of the scene that was shown.
     pub(super) last: Option<(Camera, Clip, Settings)>,
@@ -100,7 +100,7 @@ impl Viewer {
             alternatives: (Vec::new(), 0),
             warnings: 0,
             overlay: Overlay::new(manner.text),
-            compiling: false,
+            compiling: 0,
             faces: ShownFaces::default(),
             last: None,
             manner,

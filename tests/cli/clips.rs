@@ -220,8 +220,8 @@ fn layers_have_names_and_clips_of_their_own() {
     let ([hidden, _, _], _) = counts("outer=@/scene.ply inner=@/more.ply --hide outer");
     assert!(hidden <= 800);
     for (flags, words) in [
-        ("--hide skin", "there are outer, inner"),
-        ("--unhide skin", "there are outer, inner"),
+        ("--hide skin", "the layers are outer, inner"),
+        ("--unhide skin", "the layers are outer, inner"),
         ("--layer-clip inner", "NAME=EXPRESSION"),
         ("--layer-clip inner=some(box:0)", "column 1"),
     ] {

@@ -335,7 +335,7 @@ fn a_clip_moves_along_with_the_camera() {
     for (words, says) in [
         (
             "render @/scene.ply -o @/a.png --from plane:1,0,0,0 --to plane:1,0,0,1",
-            "give a path",
+            "give --path",
         ),
         (
             "render @/scene.ply -o @/a_{}.png --path orbit --section z=0.4",

@@ -93,7 +93,7 @@ pub(super) unsafe fn what_is_wrong_is_said(
         assert_fails(failed, RARA_ERROR_INVALID, beyond);
         state.placement.rotation = [0.0; 4];
         let failed = set(0, &state);
-        assert_fails(failed, RARA_ERROR_INVALID, "a rotation that is not zero");
+        assert_fails(failed, RARA_ERROR_INVALID, "its rotation cannot be zero");
         state.struct_size = 3;
         let failed = set(0, &state);
         assert_fails(failed, RARA_ERROR_INVALID, "state->struct_size is 3");

@@ -292,7 +292,7 @@ fn centres_far_from_zero_keep_their_digits() {
         let read = load(&path, &mut |_, _| ()).expect("it is read");
         let report = read.report.to_string();
         assert!(
-            report.contains("counted the centres from"),
+            report.contains("stored the centres relative to"),
             "{name}: {report}"
         );
         let read = read.gaussians;

@@ -6,6 +6,7 @@ use rara::{HeadlessDesc, Result, Scene, ShFormat};
 
 use super::failure::Failure;
 use super::profile::Profile;
+use super::reading::Reading;
 use super::scenes::SceneArgs;
 use super::session::{FirstFrame, Session, SessionAhead};
 use rara::scene::layers::{LayerClip, SceneLayers};
@@ -55,8 +56,15 @@ impl SessionCache {
             }
             place.close()?; // before the next scene needs the memory
         }
-        let ahead = first.map(SessionAhead::begin);
-        let loaded = profile.span("load", || scenes.load())?;
+        let (mut first, mut ahead) = (first, None);
+        let mut begin = |reading: Reading<'_>| {
+            // Of a file that is not there nobody waits for a driver.
+            let is_there = reading.bytes.1 > 0;
+            if let Some(first) = first.take_if(|_| is_there) {
+                ahead = Some(SessionAhead::begin(first));
+            }
+        };
+        let loaded = profile.span("load", || scenes.load_watched(&mut begin))?;
         let place = ScenePlace {
             flags,
             clips: loaded

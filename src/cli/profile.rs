@@ -8,7 +8,9 @@ use rara::{Clip, HeadlessDesc, Scene, Settings, ShFormat, Trace};
 use super::failure::Failure;
 use super::memory;
 use super::output;
+use super::scenes::SceneArgs;
 use super::session::{FirstFrame, Session};
+use super::settings::DeviceArgs;
 use super::values;
 
 /// Recordings to make beside the pictures.
@@ -70,15 +72,14 @@ impl Profile {
     /// find no memory, which is checked once the scene is known.
     pub(super) fn first_frame(
         &self,
-        device: HeadlessDesc,
-        layers: usize,
+        device: &DeviceArgs,
+        scenes: &SceneArgs,
         (clip, settings): (Clip, Settings),
     ) -> Option<FirstFrame> {
-        let device = device.statistics(self.statistics);
         let is_late = self.is_traced() || memory::address_space_is_limited();
         (!is_late).then_some(FirstFrame {
-            device,
-            layers,
+            device: device.meant().statistics(self.statistics),
+            layers: scenes.places().len(),
             clip,
             settings,
         })

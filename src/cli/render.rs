@@ -4,8 +4,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 use glam::DVec3;
+use rara::clip::Expression;
 use rara::scene::layers::Region;
-use rara::{Aov, Camera, Clip, Picture, Scene, Settings, Show};
+use rara::{Aov, Camera, Clip, Picture, Plane, Scene, Settings, Show};
 use rara_shots::{Face, Panorama, levelled};
 
 use super::clip::{Regions, joined};
@@ -145,9 +146,10 @@ impl Pictures {
     fn example(&self) -> Clip {
         let more = match self {
             Self::Views(_, _, moving) => moving.as_ref().and_then(|moving| moving.example()),
-            Self::Sections(_) => Region::shape("plane:1,0,0,0")
-                .ok()
-                .map(|one| one.example().clone()),
+            Self::Sections(_) => {
+                let plane = Plane::new(DVec3::X, 0.0).ok();
+                plane.map(|plane| Expression::Shape(plane.into()))
+            }
         };
         self.regions().example(more)
     }
@@ -398,8 +400,7 @@ impl Render {
         let (device, sh) = (&self.frame.device, settings.precision.sh);
         let session_of = (device, &self.profile, sh);
         let example = (pictures.example(), *settings);
-        let layers = self.scenes.places().len();
-        let first = profile.first_frame(self.frame.device.meant(), layers, example);
+        let first = profile.first_frame(device, &self.scenes, example);
         // A slice is another scene, drawn in another way.
         let first = first.filter(|_| !self.slice.is_shown());
         let (mut place, mut loaded) = kept.load(profile, &self.scenes, &session_of, first)?;

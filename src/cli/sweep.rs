@@ -178,8 +178,7 @@ impl Sweep {
         let (device, sh) = (&self.frame.device, settings.precision.sh);
         let session_of = (device, &self.profile, sh);
         let example = (regions.example(moving.example()), settings);
-        let layers = self.scenes.places().len();
-        let first = profile.first_frame(self.frame.device.meant(), layers, example);
+        let first = profile.first_frame(device, &self.scenes, example);
         let (mut place, mut loaded) = kept.load(profile, &self.scenes, &session_of, first)?;
         regions.settle(&mut loaded)?;
         layer_names::tell_own_clips(&loaded);

@@ -23,7 +23,8 @@ impl Sheet {
     /// An empty sheet with room for so many pictures of a size, in so many columns; of 0 columns there are as many as make it
     /// about square.
     pub(super) fn new(size: (u32, u32), count: u32, columns: u32) -> Result<Self> {
-        let (width, height) = (size.0 + GAP, band(size.0) + size.1 + GAP);
+        let (.., band) = lettering(size.0);
+        let (width, height) = (size.0 + GAP, band + size.1 + GAP);
         let square = (f64::from(count) * f64::from(height) / f64::from(width)).sqrt();
         let columns = match columns {
             0 => square.round() as u32,
@@ -46,10 +47,9 @@ impl Sheet {
     /// Puts the next picture on the sheet.
     pub(super) fn add(&mut self, label: &str, picture: &Picture) {
         let (width, height) = self.size;
-        let band = band(width);
+        let (font, scale, band) = lettering(width);
         let (column, row) = (self.count % self.columns, self.count / self.columns);
         let corner = [column * (width + GAP), row * (band + height + GAP)];
-        let (font, scale) = lettering(width);
         let mut words = Picture::filled(width, band, MARGIN);
         ink::text(
             &mut words,
@@ -82,19 +82,11 @@ fn short(label: &str) -> String {
     label.chars().filter(fits).collect()
 }
 
-/// The letters over pictures of a width: their font, and how many pixels its dots have.
-fn lettering(width: u32) -> (ink::Font, u32) {
-    match width {
-        0..256 => (ink::Font::Small, 1),
-        _ => (ink::Font::Large, width / 200),
-    }
-}
-
-/// How high the label is over pictures of a width.
-fn band(width: u32) -> u32 {
-    match lettering(width) {
-        (ink::Font::Small, scale) => 11 * scale,
-        (_, scale) => 22 * scale,
+/// The letters over pictures of a width: their font, how many pixels its dots have, and how high the label is.
+fn lettering(width: u32) -> (ink::Font, u32, u32) {
+    match (width, width / 200) {
+        (0..256, _) => (ink::Font::Small, 1, 11),
+        (_, scale) => (ink::Font::Large, scale, 22 * scale),
     }
 }
 

@@ -452,8 +452,7 @@ impl Module {
         }
     }
 
-    /// Which blocks of a function are reached, and how. Of variables that are stored once the values are known if what is stored
-    /// is.
+    /// Finds which blocks of a function are reached, and how. A variable that is stored once has the value that is stored.
     fn flow(&mut self, function: &[Instruction<'_>], stored_once: &HashSet<u32>) -> Flow {
         let mut flow = Flow::new(function);
         if let Some(first) = flow.blocks.first_mut() {

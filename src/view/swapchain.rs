@@ -253,7 +253,7 @@ impl Swapchain {
     /// Records a copy to all of an acquired image, whatever it holds.
     ///
     /// # Safety
-    /// As of [`begin_rendering`](Self::begin_rendering).
+    /// The same as of [`begin_rendering`](Self::begin_rendering).
     unsafe fn copy_ground(
         &self,
         cmd: vk::CommandBuffer,

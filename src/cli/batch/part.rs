@@ -28,7 +28,7 @@ const INDICES: [(&str, u32); 3] = [
 
 /// The number of workers, for schedulers that do not say it.
 const COUNT: &str = "RARA_PARTS";
-/// What this was called before.
+/// The former name of this variable.
 const COUNT_BEFORE: &str = "RARA_SHARDS";
 
 /// The part of this process, if it is a task of an array.

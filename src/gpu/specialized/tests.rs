@@ -28,6 +28,37 @@ const END: u32 = 23;
 /// A function that calls one function where a constant is true and another where it is not, and then loops, unless the
 /// constant is true: `if (WHICH) called(); else dropped(); for (uint turn = 0;; turn = 1) { if (WHICH) break; }`.
 fn module() -> Vec<u32> {
+    module_of(
+        30,
+        &[],
+        &[
+            instruction(op::LABEL, &[ENTRY]),
+            instruction(op::SELECTION_MERGE, &[MERGE, 0]),
+            instruction(op::BRANCH_CONDITIONAL, &[WHICH, THEN, ELSE]),
+            instruction(op::LABEL, &[THEN]),
+            instruction(op::FUNCTION_CALL, &[VOID, LATER, CALLED]),
+            instruction(op::BRANCH, &[MERGE]),
+            instruction(op::LABEL, &[ELSE]),
+            instruction(op::FUNCTION_CALL, &[VOID, LAST, DROPPED]),
+            instruction(op::BRANCH, &[MERGE]),
+            instruction(op::LABEL, &[MERGE]),
+            instruction(op::PHI, &[UINT, JOINED, ONE, THEN, ZERO, ELSE]),
+            instruction(op::BRANCH, &[HEAD]),
+            instruction(op::LABEL, &[HEAD]),
+            instruction(op::PHI, &[UINT, TURN, JOINED, MERGE, ONE, GOES_ON]),
+            instruction(op::LOOP_MERGE, &[AFTER, GOES_ON, 0]),
+            instruction(op::BRANCH, &[BODY]),
+            instruction(op::LABEL, &[BODY]),
+            instruction(op::BRANCH_CONDITIONAL, &[WHICH, AFTER, GOES_ON]),
+            instruction(op::LABEL, &[GOES_ON]),
+            instruction(op::BRANCH, &[HEAD]),
+            instruction(op::LABEL, &[AFTER]),
+        ],
+    )
+}
+
+/// A module whose main function has these instructions before its return, more types than others, and ids below a bound.
+fn module_of(bound: u32, types: &[Vec<u32>], main: &[Vec<u32>]) -> Vec<u32> {
     let name = u32::from_ne_bytes(*b"main");
     let function = |id: u32, label: u32| {
         [
@@ -49,37 +80,12 @@ fn module() -> Vec<u32> {
         instruction(op::CONSTANT, &[UINT, ZERO, 0]),
         instruction(op::CONSTANT, &[UINT, ONE, 1]),
     ];
-    let main = [
-        instruction(op::FUNCTION, &[VOID, MAIN, 0, OF_FUNCTIONS]),
-        instruction(op::LABEL, &[ENTRY]),
-        instruction(op::SELECTION_MERGE, &[MERGE, 0]),
-        instruction(op::BRANCH_CONDITIONAL, &[WHICH, THEN, ELSE]),
-        instruction(op::LABEL, &[THEN]),
-        instruction(op::FUNCTION_CALL, &[VOID, LATER, CALLED]),
-        instruction(op::BRANCH, &[MERGE]),
-        instruction(op::LABEL, &[ELSE]),
-        instruction(op::FUNCTION_CALL, &[VOID, LAST, DROPPED]),
-        instruction(op::BRANCH, &[MERGE]),
-        instruction(op::LABEL, &[MERGE]),
-        instruction(op::PHI, &[UINT, JOINED, ONE, THEN, ZERO, ELSE]),
-        instruction(op::BRANCH, &[HEAD]),
-        instruction(op::LABEL, &[HEAD]),
-        instruction(op::PHI, &[UINT, TURN, JOINED, MERGE, ONE, GOES_ON]),
-        instruction(op::LOOP_MERGE, &[AFTER, GOES_ON, 0]),
-        instruction(op::BRANCH, &[BODY]),
-        instruction(op::LABEL, &[BODY]),
-        instruction(op::BRANCH_CONDITIONAL, &[WHICH, AFTER, GOES_ON]),
-        instruction(op::LABEL, &[GOES_ON]),
-        instruction(op::BRANCH, &[HEAD]),
-        instruction(op::LABEL, &[AFTER]),
-        instruction(253, &[]),
-        instruction(op::FUNCTION_END, &[]),
-    ];
-    let header = vec![0x0723_0203, 0x0001_0600, 0, 30, 0];
+    let begin = instruction(op::FUNCTION, &[VOID, MAIN, 0, OF_FUNCTIONS]);
+    let end = [instruction(253, &[]), instruction(op::FUNCTION_END, &[])];
+    let header = vec![0x0723_0203, 0x0001_0600, 0, bound, 0];
     let functions = [function(CALLED, 24), function(DROPPED, END)].concat();
-    [vec![header], globals.to_vec(), main.to_vec(), functions]
-        .concat()
-        .concat()
+    let before = [&[header][..], &globals, types, &[begin]].concat();
+    [&before[..], main, &end, &functions].concat().concat()
 }
 
 #[test]
@@ -182,16 +188,9 @@ fn a_variable_that_is_stored_once_has_that_value() {
     const POINTER: u32 = 31;
     const BOTH: u32 = 32;
     const LOADED: u32 = 33;
+    let pointer = instruction(32, &[POINTER, 7, BOOL]);
     let condition = |more: &[Vec<u32>]| {
-        let whole = module();
-        let all = instructions(&whole);
-        let begin = all.iter().position(|one| one.op == op::FUNCTION);
-        let end = all.iter().position(|one| one.op == op::FUNCTION_END);
-        let (begin, end) = (begin.expect("a function"), end.expect("its end") + 1);
-        let words =
-            |some: &[Instruction<'_>]| some.iter().flat_map(|one| one.words).copied().collect();
-        let main = [
-            instruction(op::FUNCTION, &[VOID, MAIN, 0, OF_FUNCTIONS]),
+        let stores = [
             instruction(op::LABEL, &[ENTRY]),
             instruction(op::VARIABLE, &[POINTER, BOTH, 7]),
             instruction(op::SELECTION_MERGE, &[MERGE, 0]),
@@ -202,7 +201,8 @@ fn a_variable_that_is_stored_once_has_that_value() {
             instruction(op::LABEL, &[MERGE]),
             instruction(op::PHI, &[BOOL, JOINED, WHICH, ENTRY, LATER, THEN]),
             instruction(op::STORE, &[BOTH, JOINED]),
-            more.concat(),
+        ];
+        let loads = [
             instruction(op::LOAD, &[BOOL, LOADED, BOTH]),
             instruction(op::SELECTION_MERGE, &[AFTER, 0]),
             instruction(op::BRANCH_CONDITIONAL, &[LOADED, BODY, AFTER]),
@@ -210,21 +210,12 @@ fn a_variable_that_is_stored_once_has_that_value() {
             instruction(op::FUNCTION_CALL, &[VOID, LAST, DROPPED]),
             instruction(op::BRANCH, &[AFTER]),
             instruction(op::LABEL, &[AFTER]),
-            instruction(253, &[]),
-            instruction(op::FUNCTION_END, &[]),
         ];
-        let pointer = instruction(32, &[POINTER, 7, BOOL]);
-        let mut module = [
-            words(&all[..begin]),
-            pointer,
-            main.concat(),
-            words(&all[end..]),
-        ]
-        .concat();
-        let mut header = whole[..HEADER].to_vec();
-        header[BOUND] = 34;
-        header.append(&mut module);
-        header
+        module_of(
+            34,
+            &[pointer.clone()],
+            &[&stores, more, &loads[..]].concat(),
+        )
     };
     let drops = |module: &[u32], which: u32| {
         let made = specialized(module, &[(7, which)]);

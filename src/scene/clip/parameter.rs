@@ -47,8 +47,8 @@ impl Role {
         }
     }
 
-    /// What 0 % and 100 % of its number at an index mean in these bounds: the ends of an axis for a point, and for a length from
-    /// nothing to the extent along that axis, or to the longest extent. `None` for numbers that are no lengths.
+    /// Returns what 0 % and 100 % of its number at an index mean in these bounds: the ends of an axis for a point, and for a
+    /// length from nothing to the extent along that axis, or to the longest extent. `None` for numbers that are no lengths.
     pub(super) fn share(self, index: usize, bounds: &Bounds) -> Option<[f64; 2]> {
         let extent = bounds.max - bounds.min;
         match self {

@@ -1,5 +1,6 @@
 //! Prisms over polygons: regions whose cross-section along an axis is a simple polygon with holes.
 
+use std::cmp::Ordering;
 use std::fmt;
 
 use glam::{DVec2, DVec3};
@@ -20,7 +21,7 @@ pub struct Prism {
     /// The polygon and its holes, each as its corners.
     rings: Vec<Vec<DVec2>>,
     heights: Option<[f64; 2]>,
-    /// What all of it keeps.
+    /// The region that all of it keeps.
     clip: Clip,
 }
 
@@ -46,7 +47,7 @@ impl Prism {
             ));
         };
         if let Some([low, high]) = heights
-            && low.partial_cmp(&high) != Some(std::cmp::Ordering::Less)
+            && low.partial_cmp(&high) != Some(Ordering::Less)
         {
             return invalid(format!(
                 "from {low} to {high}: the first height is below the second"
@@ -57,7 +58,7 @@ impl Prism {
             return invalid("needs corners, as in polygon:z;0,0;2,0;2,1".into());
         };
         for (number, ring) in cleaned.iter().enumerate() {
-            if ring.len() < 3 || ring.len() == 3 && area(ring) == 0.0 {
+            if ring.len() < 3 {
                 return invalid(format!(
                     "needs three corners that are not in line; {} has fewer",
                     called(number)
@@ -233,25 +234,35 @@ fn edge_text(rings: &[Vec<DVec2>], (ring, edge): (usize, usize)) -> String {
 
 /// A ring without corners that repeat the one before or that lie between their neighbours, which change nothing.
 fn without_repeats(ring: &[DVec2]) -> Vec<DVec2> {
+    let is_between = |before: DVec2, corner: DVec2, after: DVec2| {
+        let (a, b) = (corner - before, after - corner);
+        a.perp_dot(b) == 0.0 && a.dot(b) > 0.0
+    };
     let mut kept: Vec<DVec2> = Vec::new();
     for &corner in ring {
-        if kept.last() != Some(&corner) {
-            kept.push(corner);
+        if kept.last() == Some(&corner) {
+            continue;
         }
+        if let [.., before, last] = kept[..]
+            && is_between(before, last, corner)
+        {
+            kept.pop();
+        }
+        kept.push(corner);
     }
     while kept.len() > 1 && kept.first() == kept.last() {
         kept.pop();
     }
-    let is_between = |ring: &[DVec2], at: usize| {
-        let count = ring.len();
-        let [before, after] = [ring[(at + count - 1) % count], ring[(at + 1) % count]];
-        let (a, b) = (ring[at] - before, after - ring[at]);
-        a.perp_dot(b) == 0.0 && a.dot(b) > 0.0
-    };
-    while kept.len() > 3
-        && let Some(at) = (0..kept.len()).find(|&at| is_between(&kept, at))
+    // The last corner and the first have neighbours beyond the ends of the list.
+    while let [first, .., before, last] = kept[..]
+        && is_between(before, last, first)
     {
-        kept.remove(at);
+        kept.pop();
+    }
+    while let [first, second, .., last] = kept[..]
+        && is_between(last, first, second)
+    {
+        kept.remove(0);
     }
     kept
 }
@@ -332,13 +343,13 @@ fn touch([a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> bool {
         || (sides[3] == 0.0 && is_on(c, d, b))
 }
 
-/// Which half-planes a polygon is made of: the left sides of its edges, each of which appears once (Dobkin, Guibas, Hershberger
+/// A polygon as a combination of half-planes: the left sides of its edges, each of which appears once (Dobkin, Guibas, Hershberger
 /// and Snoeyink 1988).
 #[derive(Debug)]
 enum Formula {
-    /// What is left of an edge.
+    /// The half-plane that is left of an edge.
     Edge(DVec2, DVec2),
-    /// What all of them keep, or any.
+    /// The region that all parts keep, or any of them.
     Both(ClipOp, Vec<Formula>),
 }
 
@@ -349,17 +360,10 @@ fn formula(ring: &[DVec2]) -> Formula {
     if area(&ring) < 0.0 {
         ring.reverse();
     }
-    let order = |a: &usize, b: &usize| {
-        let [a, b] = [ring[*a], ring[*b]];
-        a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y))
-    };
-    let first = (0..ring.len()).min_by(order).unwrap_or(0);
-    ring.rotate_left(first);
-    let order = |a: &usize, b: &usize| {
-        let [a, b] = [ring[*a], ring[*b]];
-        a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y))
-    };
-    let last = (0..ring.len()).max_by(order).unwrap_or(0);
+    let first = (0..ring.len()).min_by(|a, b| in_order(ring[*a], ring[*b]));
+    ring.rotate_left(first.unwrap_or(0));
+    let last = (0..ring.len()).max_by(|a, b| in_order(ring[*a], ring[*b]));
+    let last = last.unwrap_or(0);
     let back = [&ring[last..], &ring[..1]].concat();
     let chains = [of_chain(&ring[..=last]), of_chain(&back)];
     Formula::Both(ClipOp::And, chains.into())
@@ -413,6 +417,11 @@ fn of_chain(chain: &[DVec2]) -> Formula {
         .unwrap_or(Formula::Both(ClipOp::And, Vec::new()))
 }
 
+/// The order of points along the first axis, and of those beside each other along the second.
+fn in_order(a: DVec2, b: DVec2) -> Ordering {
+    a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y))
+}
+
 /// The number of a corner between the ends of a chain that is farther in some direction than all else, also than where its ends go on
 /// to.
 fn outermost(chain: &[DVec2]) -> usize {
@@ -422,18 +431,12 @@ fn outermost(chain: &[DVec2]) -> usize {
         (chain[last] - chain[last - 1]).normalize_or_zero(),
     ];
     let farthest = |direction: DVec2, aside: DVec2| {
-        let key = |at: &usize| {
-            [
-                direction.dot(chain[*at] - chain[1]),
-                aside.dot(chain[*at] - chain[1]),
-            ]
+        let place = |at: &usize| {
+            let from = chain[*at] - chain[1];
+            DVec2::new(direction.dot(from), aside.dot(from))
         };
-        (1..last)
-            .max_by(|a, b| {
-                let [a, b] = [key(a), key(b)];
-                a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1]))
-            })
-            .unwrap_or(1)
+        let farthest = (1..last).max_by(|a, b| in_order(place(a), place(b)));
+        farthest.unwrap_or(1)
     };
     let between = rays[0] + rays[1];
     if between.length() > 1e-9 {

@@ -271,6 +271,13 @@ impl Sections {
         &self.shapes
     }
 
+    /// The clip of a section in an example of a scene. The plane of any section stands for that of each.
+    pub(super) fn example(&self) -> Clip {
+        let plane = Plane::new(glam::DVec3::X, 0.0).ok();
+        self.shapes
+            .example(plane.map(|plane| Expression::Shape(plane.into())))
+    }
+
     pub(super) fn sections(&self, scene: &Scene<'_>) -> rara::Result<Vec<Section>> {
         let bounds = Bounds::of(scene.clone());
         let others = self.shapes.expressions(scene)?;

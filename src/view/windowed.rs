@@ -1,12 +1,14 @@
 //! Shows scenes in a window, which may be any crate's that speaks `raw-window-handle`.
 
 use std::sync::Arc;
+use std::thread::{self, JoinHandle};
 
 use rara::ash::vk;
 use rara::gpu::{Device, DeviceDesc};
 use rara::{
-    Camera, Clip, Error, FrameStats, Headless, HeadlessDesc, LayerState, Lines, Outcome, Picture,
-    Renderer, RendererDesc, Result, Scene, SceneBuffers, SceneLayer, Settings, ShFormat, Trace,
+    Camera, Clip, Error, FrameLimits, FrameStats, Headless, HeadlessDesc, LayerState, Lines,
+    Outcome, Picture, Renderer, RendererDesc, Result, Scene, SceneBuffers, SceneLayer, Settings,
+    ShFormat, Trace,
 };
 use rara_gpu::{Attachments, Drawer, PipelineFile};
 use raw_window_handle::{HasDisplayHandle, HasWindowHandle};
@@ -31,6 +33,9 @@ pub struct Windowed {
     overlay: Lines,
     panels: Panels,
     renderer: Renderer,
+    desc: RendererDesc,
+    /// The thread that compiles shaders for the first frames, until one of them is drawn.
+    compiling: Option<JoinHandle<()>>,
     scene: Option<SceneBuffers>,
     pipelines: Option<PipelineFile>,
     trace: Option<Trace>,
@@ -73,7 +78,7 @@ impl Windowed {
             device.on_compile(hook.clone());
         }
         let bindings = desc.bindings_on(&device);
-        let renderer = RendererDesc::new(swapchain.format())
+        let of_frames = RendererDesc::new(swapchain.format())
             .bindings(bindings)
             .timing(true)
             .reuse(true)
@@ -84,7 +89,9 @@ impl Windowed {
             lines: Vec::new(),
             overlay: Lines::new(bindings, FRAMES),
             panels: Panels::default(),
-            renderer: Renderer::new(&device, renderer)?,
+            renderer: Renderer::new(&device, of_frames)?,
+            desc: of_frames,
+            compiling: None,
             scene: None,
             pipelines,
             trace: desc.trace.clone(),
@@ -102,6 +109,22 @@ impl Windowed {
     /// The format of the window's pictures.
     pub fn format(&self) -> vk::Format {
         self.swapchain.format()
+    }
+
+    /// Begins to compile, on a thread of its own, the shaders of all frames within limits, as while a scene is read. Frames
+    /// [compile](Self::compiles) until it is done; a shader that cannot be compiled is said by the frame that needs it.
+    pub fn compile_ahead(&mut self, limits: FrameLimits) -> Result<()> {
+        self.await_compiled();
+        let mut sharing = self.renderer.sharing(self.desc)?;
+        let work = move || drop(sharing.reserve(&limits));
+        let named = thread::Builder::new().name("compiling".into());
+        self.compiling = named.spawn(work).ok();
+        Ok(())
+    }
+
+    /// Waits for the thread that compiles ahead, whose panic is said by itself.
+    fn await_compiled(&mut self) {
+        drop(self.compiling.take().map(JoinHandle::join));
     }
 
     /// Uploads a scene in place of the one before, its spherical harmonics stored as `format` says.
@@ -195,6 +218,10 @@ impl Windowed {
         self.unbroken()?;
         self.wait()?;
         let scene = loaded(self.scene.as_ref())?;
+        let is_compiling = |thread: &JoinHandle<()>| !thread.is_finished();
+        if self.compiling.as_ref().is_some_and(is_compiling) {
+            return Ok(true); // the thread has the lock that would have to be asked
+        }
         self.renderer.compiles(scene, camera, clip, settings)
     }
 
@@ -202,6 +229,7 @@ impl Windowed {
     /// to the window there are no more frames: a new `Windowed` for the same window is the way on.
     pub fn show(&mut self, camera: &Camera, clip: &Clip, settings: &Settings) -> Result<Redraw> {
         self.unbroken()?;
+        self.await_compiled();
         self.wait()?;
         let Self {
             swapchain,
@@ -383,6 +411,7 @@ fn loaded<T>(scene: Option<T>) -> Result<T> {
 /// Keeps the compiled pipelines for the next run.
 impl Drop for Windowed {
     fn drop(&mut self) {
+        self.await_compiled();
         if let Some(pipelines) = &mut self.pipelines {
             pipelines.keep(&self.device);
         }

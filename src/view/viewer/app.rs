@@ -113,7 +113,8 @@ impl App {
             ))
         })?;
         let window = Arc::new(window);
-        let windowed = Windowed::new(&desc.device, window.clone())?;
+        let mut windowed = Windowed::new(&desc.device, window.clone())?;
+        windowed.compile_ahead(desc.limits())?;
         host.say(&format_args!(
             "device   {} ({}), {:?}; H lists the keys",
             windowed.device().info().name,
@@ -167,6 +168,7 @@ impl App {
             }
             WindowEvent::Focused(false) => {
                 self.input.release();
+                stage.drawn.clear();
                 None
             }
             WindowEvent::ModifiersChanged(modifiers) => {
@@ -193,10 +195,7 @@ impl App {
                     event.repeat,
                 )
             }
-            WindowEvent::MouseInput { state, button, .. } => {
-                self.input.button(button, state);
-                None
-            }
+            WindowEvent::MouseInput { state, button, .. } => self.input.button(button, state),
             WindowEvent::CursorMoved { position, .. } => {
                 let to = DVec2::new(position.x, position.y);
                 self.input.cursor(to, stage.size().1)

@@ -1,7 +1,7 @@
 //! The description from which a viewer is opened.
 
 use glam::DVec3;
-use rara::{HeadlessDesc, Settings};
+use rara::{Clip, FrameLimits, HeadlessDesc, Settings};
 use rara_base::setters;
 
 use super::action::Action;
@@ -29,6 +29,9 @@ pub struct ViewerDesc {
     pub text: bool,
     /// How the first scene is read.
     pub load: Load,
+    /// The number of the first scene's layers and an example of its clip, as far as they are known before it is read; shaders
+    /// are compiled for them meanwhile.
+    pub expected: (u32, Clip),
     /// The actions that are done first.
     pub script: Vec<Action>,
     /// Where more actions come from.
@@ -42,6 +45,7 @@ setters!(ViewerDesc {
     up: Option<DVec3>,
     outlined: bool,
     text: bool,
+    expected: (u32, Clip),
     script: Vec<Action>,
     follow: Option<Follow>,
 });
@@ -57,8 +61,24 @@ impl ViewerDesc {
             outlined: true,
             text: true,
             load,
+            expected: (1, Clip::default()),
             script: Vec::new(),
             follow: None,
         }
+    }
+    /// The limits of the frames that are expected, of a scene of however many Gaussians.
+    pub(super) fn limits(&self) -> FrameLimits {
+        let (layers, clip) = &self.expected;
+        let count = clip.all_surfaces().len() as u32;
+        let (planes, surfaces) = match clip.is_general() {
+            true => (0, count),
+            false => (count, 0),
+        };
+        FrameLimits::new(self.size, 1)
+            .layers((*layers).max(1))
+            .sh_format(self.settings.precision.sh)
+            .planes(planes)
+            .surfaces(surfaces)
+            .settings(vec![self.settings])
     }
 }

@@ -61,7 +61,11 @@ fn explain(error: &serde_json::Error, field: &str) -> String {
     let text = error.to_string();
     let place = format!(" at line {line} column {column}");
     let text = on_a_line(text.strip_suffix(&place).unwrap_or(&text), 240);
-    format!("line {line} column {column}{field}: this is not the JSON expected here ({text})")
+    let what = match error.is_data() {
+        true => "this is not the JSON expected here",
+        false => "this is not valid JSON",
+    };
+    format!("line {line} column {column}{field}: {what} ({text})")
 }
 
 #[cfg(test)]
@@ -78,7 +82,7 @@ mod tests {
             ("[{}", "line 1 column 3"),
             (
                 "[{}] x",
-                "line 1 column 6: this is not the JSON expected here (trailing characters)",
+                "line 1 column 6: this is not valid JSON (trailing characters)",
             ),
         ] {
             let message = parse(json.as_bytes()).unwrap_err();

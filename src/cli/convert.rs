@@ -68,8 +68,9 @@ pub(super) struct Convert {
     /// The version of a .spz file
     ///
     /// Older programs need version 2. Version 4 is compressed with zstd instead of gzip; programs from before 2026 cannot read it.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=4), default_value_t = SaveOptions::default().spz_version)]
-    spz_version: u32,
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=4))]
+    #[arg(help = format!("The version of a .spz file [default: {}]", SaveOptions::default().spz_version))]
+    spz_version: Option<u32>,
     /// Print a report as JSON to standard output
     #[arg(long)]
     json: bool,
@@ -137,6 +138,11 @@ impl Convert {
     pub(super) fn run(self) -> Result<(), Failure> {
         let format =
             scene::saved_format(&self.output).map_err(|error| Failure::Usage(error.to_string()))?;
+        if self.spz_version.is_some() && format != Format::Spz {
+            return Err(Failure::Usage(format!(
+                "--spz-version has no effect on {format}: name a .spz file, or leave --spz-version out"
+            )));
+        }
         let entries = self.scenes.entries()?;
         let scenes = match is_several(&self.output) {
             true => self.scenes.each()?,
@@ -212,8 +218,10 @@ impl Convert {
             whole.set_sh_degree(degree);
         }
         let lost = extra.lost(format);
-        let options = SaveOptions::default()
-            .spz_version(self.spz_version)
+        let usual = SaveOptions::default();
+        let version = self.spz_version.unwrap_or(usual.spz_version);
+        let options = usual
+            .spz_version(version)
             .annotations(Some(annotations))
             .properties(extra.properties)
             .up(up);

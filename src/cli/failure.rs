@@ -83,9 +83,32 @@ impl fmt::Display for Failure {
     }
 }
 
+/// What the standard library says of numbers that it cannot read, and what is said in its place.
+const NUMBERS: [(&str, &str); 5] = [
+    ("invalid digit found in string", "expected a whole number"),
+    (
+        "cannot parse integer from empty string",
+        "expected a whole number",
+    ),
+    (
+        "number too large to fit in target type",
+        "this number is too large",
+    ),
+    (
+        "number too small to fit in target type",
+        "this number is too small",
+    ),
+    ("invalid float literal", "expected a number"),
+];
+
 /// Clap's message without its layout: what is wrong and its tip, but not the usage and the pointer to `--help`.
 fn one_line(message: &str) -> String {
-    let message = message.strip_prefix("error: ").unwrap_or(message);
+    let said = NUMBERS
+        .iter()
+        .fold(message.to_owned(), |text, (theirs, ours)| {
+            text.replace(theirs, ours)
+        });
+    let message = said.strip_prefix("error: ").unwrap_or(&said);
     let parts = message
         .split("\n\n")
         .filter(|part| !part.starts_with("Usage:") && !part.starts_with("For more information"));

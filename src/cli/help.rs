@@ -48,7 +48,10 @@ pub(super) fn command(definitions: Command) -> Command {
             let part = part.mut_args(|arg| {
                 order += 1;
                 let is_output = arg.get_id() == "output";
+                // A number below zero is the flag's value, of which the flag says what is wrong, and no other flag.
+                let takes_numbers = !arg.is_positional() && arg.get_action().takes_values();
                 arg.display_order(if is_output { 0 } else { order })
+                    .allow_negative_numbers(takes_numbers)
             });
             let names: Vec<_> = topics(&part).iter().map(|heading| topic(heading)).collect();
             let more = match part.get_name() {

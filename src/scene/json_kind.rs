@@ -6,7 +6,6 @@ use rara_base::json::short_document;
 use serde_json::Value;
 
 /// The kind of a document.
-
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum JsonKind {
     /// A list of layers, or anything else.
@@ -38,7 +37,7 @@ impl JsonKind {
         let is_sure = match Self::from_document(&document) {
             Self::Scene => document.get("layers").is_some(),
             Self::Clips => first
-                .is_none_or(|first| first.get("clip").is_some() || first.get("normal").is_some()),
+                .is_some_and(|first| first.get("clip").is_some() || first.get("normal").is_some()),
             Self::Cameras => true,
         };
         is_sure.then(|| Self::from_document(&document))

@@ -192,6 +192,7 @@ fn jobs_that_cannot_be_drawn_are_named_and_the_others_are_drawn() {
         ),
         (json!({"output": path("b.png"), "size": "8"}), 2, "job 2: "),
         (json!({}), 2, "is a picture of "),
+        (json!({"output": "-"}), 2, "- is standard output"),
         (
             json!({"output": path("b.png"), "frames": 3}),
             2,

@@ -41,6 +41,8 @@ fn spz_is_written_in_the_version_that_is_asked_for() {
     assert!((0.85..0.94).contains(&share), "{sizes:?}");
     let output = line(&here, "convert @/scene.ply -o @/v.spz --spz-version 1");
     refused(&output, 2, "--spz-version");
+    let output = line(&here, "convert @/scene.ply -o @/v.ply --spz-version 2");
+    refused(&output, 2, "--spz-version has no effect on");
 }
 
 #[test]

@@ -172,6 +172,14 @@ fn a_wrong_command_line_is_status_2_and_one_line() {
             "leave out --clip-op or",
         ),
         ("render x.ply -o a.png --size 100", "1024x768"),
+        (
+            "render x.ply -o a.png --near-cut -1",
+            "give a depth above 0",
+        ),
+        (
+            "generate general -n 1.5 -o a.ply",
+            "expected a whole number",
+        ),
         ("render x.ply -o a.png --size 0x100", "0x100"),
         ("render x.ply -o a.png --size 100000x1", "100000x1"),
         (

@@ -167,6 +167,12 @@ impl Batch {
                 }
                 .map_err(about)?;
                 for (_, name) in &plan.pictures {
+                    if name == output::STANDARD {
+                        return Err(Failure::Usage(format!(
+                            "{}: {name} is standard output, and a batch writes its pictures to files: name one",
+                            job.name
+                        )));
+                    }
                     if let Some(other) = names.insert(name.clone(), job.name.clone()) {
                         return Err(Failure::Usage(format!(
                             "{}: {name} is a picture of {other} too: give them names that differ",

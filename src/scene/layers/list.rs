@@ -16,13 +16,16 @@ use crate::formats::SOG_DOCUMENTS;
 use crate::layer::LayerState;
 
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(
+    deny_unknown_fields,
+    expecting = "an object whose \"layers\" are a list"
+)]
 struct SceneJson {
     layers: Vec<LayerRecord>,
 }
 
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a layer: an object with a \"path\"")]
 struct LayerRecord {
     name: Option<String>,
     path: PathBuf,
@@ -155,8 +158,10 @@ pub fn read_list(path: &Path) -> Result<Vec<LayerEntry>> {
             let selected = selection.selection(&layer);
             let selected = selected
                 .map_err(|error| format(format!("layer {number}, selection {at}: {error}")))?;
+            selected.state.check(&selected.name).map_err(of_entry)?;
             layer.selected.push(selected);
         }
+        layer.state.check(&layer.name).map_err(of_entry)?;
         Ok(layer)
     };
     layers.map(layer).collect()

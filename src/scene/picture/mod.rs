@@ -42,7 +42,7 @@ named! {
         Normal = "normal",
         /// Channel layer: the number, from 0, of the layer whose splats add most to alpha; -1 in an empty pixel
         Layer = "layer",
-        /// Channel weight: the mean share of the splats that the clip keeps, 1 if it cuts none of them; 0 in an empty pixel
+        /// Channel weight: the share of each splat that the clip keeps, as a mean over the pixel's splats; 0 in an empty pixel
         Weight = "weight",
         /// Channel count: the number of splats in the pixel, front to back, until the pixel is opaque
         Count = "count",

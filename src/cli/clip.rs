@@ -4,8 +4,10 @@ use std::cell::LazyCell;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use glam::{DVec2, DVec3};
 use rara::clip::{
-    Expression, NamedClip, Prism, Solid, are_alternatives, clips_to_json, load_clips,
+    Expression, NamedClip, Prism, PrismBase, Solid, are_alternatives, clips_to_json, load_clips,
+    rings,
 };
 use rara::{Bounds, Clip, ClipOp, Plane, Scene, Shape};
 
@@ -14,6 +16,7 @@ use super::json_kind::{JsonKind, wanted};
 use super::layer_names;
 use super::output;
 use super::values;
+use super::views::Views;
 use rara::scene::layers::{LayerClip, LoadedLayer, Region, SceneLayers};
 
 /// The clip: the parts to cut away.
@@ -71,6 +74,40 @@ pub struct Regions {
     save: Option<PathBuf>,
     /// A shape of whose inside alone the others keep something.
     within: Option<Shape>,
+    /// Polygons in the first picture, which become regions once that is known.
+    lassos: Vec<Lasso>,
+}
+
+/// A polygon and its holes in a picture, px, and whether what it holds is kept.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Lasso {
+    rings: Vec<Vec<DVec2>>,
+    keeps: bool,
+}
+
+impl Lasso {
+    pub(super) fn parse(text: &str) -> rara::Result<Self> {
+        let (corners, keeps) = match text.trim().strip_prefix('!') {
+            Some(corners) => (corners, false),
+            None => (text, true),
+        };
+        let rings = rings(corners)?;
+        let lasso = Self { rings, keeps };
+        // What is wrong with it is found before the scene is read.
+        lasso.expression(&|rings| Prism::new(PrismBase::Axis("z".into()), rings, None))?;
+        Ok(lasso)
+    }
+
+    fn expression(
+        &self,
+        made: &dyn Fn(&[Vec<DVec2>]) -> rara::Result<Prism>,
+    ) -> rara::Result<Expression> {
+        let prism = Expression::Prism(made(&self.rings)?);
+        Ok(match self.keeps {
+            true => prism,
+            false => Expression::Not(Box::new(prism)),
+        })
+    }
 }
 
 impl Regions {
@@ -91,7 +128,23 @@ impl Regions {
     }
 
     pub(super) fn is_empty(&self) -> bool {
-        self.all.is_empty() && self.within.is_none()
+        self.all.is_empty() && self.within.is_none() && self.lassos.is_empty()
+    }
+
+    /// Makes the lassos regions, as the first of these cameras sees them once the scene is known. Returns the cameras, which then
+    /// are.
+    pub(super) fn see_lassos(&mut self, views: Views, scene: &Scene<'_>) -> Result<Views, Failure> {
+        if self.lassos.is_empty() {
+            return Ok(views);
+        }
+        let views = views.in_scene(scene)?;
+        for lasso in std::mem::take(&mut self.lassos) {
+            let camera = &views[0].camera;
+            let seen = lasso.expression(&|rings| Prism::of_picture(camera, rings));
+            let seen = seen.map_err(|error| Failure::Usage(format!("--lasso: {error}")))?;
+            self.all.push(Region::Fixed(seen));
+        }
+        Ok(Views::Given(views))
     }
 
     pub(super) fn expressions(&self, scene: &Scene<'_>) -> rara::Result<Vec<Expression>> {
@@ -110,7 +163,19 @@ impl Regions {
     /// The clip in an example of a scene, together with other expressions.
     pub(super) fn example(&self, others: Option<Expression>) -> Clip {
         let all = self.all.iter().map(|region| region.example().clone());
-        joined(&all.chain(others).collect::<Vec<_>>(), self.op)
+        let base = PrismBase::Eye {
+            eye: DVec3::ZERO,
+            right: DVec3::X,
+            down: DVec3::Y,
+        };
+        let lassos = self.lassos.iter().filter_map(|lasso| {
+            let made = |rings: &[Vec<DVec2>]| Prism::new(base.clone(), rings, None);
+            lasso.expression(&made).ok()
+        });
+        joined(
+            &all.chain(lassos).chain(others).collect::<Vec<_>>(),
+            self.op,
+        )
     }
 
     /// Gives layers the clips that files have for them, unless a flag says otherwise, and saves all clips where that is wanted.
@@ -190,6 +255,11 @@ impl ClipArgs {
 
     /// The clip that the flags mean; reads its files.
     pub fn meant(&self) -> Result<Regions, Failure> {
+        self.meant_beside(&[])
+    }
+
+    /// The same beside polygons in a picture.
+    pub(super) fn meant_beside(&self, lassos: &[Lasso]) -> Result<Regions, Failure> {
         let mut all = self.clip.clone();
         let mut layers = Vec::new();
         for text in &self.clip_file {
@@ -201,7 +271,8 @@ impl ClipArgs {
             }
         }
         all.extend(self.clip_expr.iter().cloned());
-        let regions = self.regions(all, "--clip, --clip-expr or --clip-file")?;
+        let flags = "--clip, --clip-expr or --clip-file";
+        let regions = self.regions((all, lassos), flags)?;
         Ok(Regions { layers, ..regions })
     }
 
@@ -209,14 +280,18 @@ impl ClipArgs {
     pub(super) fn beside_planes(&self) -> Result<Regions, Failure> {
         let typed = self.clip.iter().chain(&self.clip_expr).cloned();
         self.regions(
-            typed.collect(),
+            (typed.collect(), &[]),
             "--clip or --clip-expr: a section's plane is not saved",
         )
     }
 
     /// Regions that combine, and are saved, as the flags say; `flags` are those that give one.
-    fn regions(&self, all: Vec<Region>, flags: &str) -> Result<Regions, Failure> {
-        if self.save_clip.is_some() && all.is_empty() {
+    fn regions(
+        &self,
+        (all, lassos): (Vec<Region>, &[Lasso]),
+        flags: &str,
+    ) -> Result<Regions, Failure> {
+        if self.save_clip.is_some() && all.is_empty() && lassos.is_empty() {
             return Err(Failure::Usage(format!(
                 "--save-clip: there is no clip to save; give one by {flags}"
             )));
@@ -227,6 +302,7 @@ impl ClipArgs {
             layers: Vec::new(),
             save: self.save_clip.clone(),
             within: None,
+            lassos: lassos.to_vec(),
         })
     }
 

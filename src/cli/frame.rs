@@ -5,7 +5,7 @@ use rara::Settings;
 use rara::camera_files::load_path_settings;
 
 use super::camera::CameraArgs;
-use super::clip::{ClipArgs, Regions};
+use super::clip::{ClipArgs, Lasso, Regions};
 use super::failure::Failure;
 use super::output;
 use super::settings::{DeviceArgs, SettingsArgs};
@@ -15,6 +15,12 @@ use super::settings::{DeviceArgs, SettingsArgs};
 pub(super) struct FrameArgs {
     #[command(flatten)]
     pub(super) clip: ClipArgs,
+    /// Keep what a polygon in the first picture holds, X,Y;X,Y;..., px (repeatable)
+    ///
+    /// A leading ! keeps the rest of the scene. What is kept lies on the lines of sight through the polygon, whatever its depth. Pixels are counted from the picture's top
+    /// left corner. A | begins the corners of a hole. Other pictures show the same part of the scene. --save-clip saves it.
+    #[arg(long, value_name = "CORNERS", value_parser = Lasso::parse, allow_hyphen_values = true, help_heading = "Clip")]
+    lasso: Vec<Lasso>,
     #[command(flatten)]
     pub(super) camera: CameraArgs,
     #[command(flatten)]
@@ -30,7 +36,7 @@ impl FrameArgs {
         &self,
         settings: Settings,
     ) -> Result<(Regions, Settings, Option<f64>), Failure> {
-        let regions = self.clip.meant()?;
+        let regions = self.clip.meant_beside(&self.lasso)?;
         let Some(file) = self.camera.chosen_file() else {
             return Ok((regions, settings, None));
         };

@@ -4,9 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 use glam::DVec3;
-use rara::clip::Expression;
 use rara::scene::layers::Region;
-use rara::{Aov, Camera, Clip, Picture, Plane, Scene, Settings, Show};
+use rara::{Aov, Camera, Clip, Picture, Scene, Settings, Show};
 use rara_shots::{Face, Panorama, levelled};
 
 use super::clip::{Regions, joined};
@@ -55,7 +54,10 @@ Examples:
   rara render scene.ply -o room.png --panorama --eye 0,0,0
   rara render scene.ply --repeat 20 --json
 
-Pictures: .png is 8-bit RGBA, un-premultiplied; .exr is 32-bit float RGBA, premultiplied.")]
+Pictures: .png is 8-bit RGBA, un-premultiplied; .exr is 32-bit float RGBA, premultiplied.
+
+Counts: visible splats are kept whole, cutoff splats are cut by the clip, invisible splats are clipped away, and culled \
+splats are out of view, too faint or hidden.")]
 pub(super) struct Render {
     /// A picture (.png, .exr, .npy) or film (.apng, .mp4, .mov, .mkv, .webm); - is stdout
     ///
@@ -142,16 +144,25 @@ impl Pictures {
         }
     }
 
-    /// The clip of the first picture in an example of a scene. The plane of any section stands for that of each.
-    fn example(&self) -> Clip {
-        let more = match self {
-            Self::Views(_, _, moving) => moving.as_ref().and_then(|moving| moving.example()),
-            Self::Sections(_) => {
-                let plane = Plane::new(DVec3::X, 0.0).ok();
-                plane.map(|plane| Expression::Shape(plane.into()))
+    /// The same once the scene is known, in which the first picture's lassos hold something.
+    fn with_lassos(self, scene: &Scene<'_>) -> Result<Self, Failure> {
+        Ok(match self {
+            Self::Views(views, mut regions, moving) => {
+                let views = regions.see_lassos(views, scene)?;
+                Self::Views(views, regions, moving)
             }
-        };
-        self.regions().example(more)
+            sections => sections,
+        })
+    }
+
+    /// The clip of the first picture in an example of a scene.
+    fn example(&self) -> Clip {
+        match self {
+            Self::Views(_, regions, moving) => {
+                regions.example(moving.as_ref().and_then(|moving| moving.example()))
+            }
+            Self::Sections(sections) => sections.example(),
+        }
     }
 
     /// The pictures, once the scene is known.
@@ -404,6 +415,7 @@ impl Render {
         // A slice is another scene, drawn in another way.
         let first = first.filter(|_| !self.slice.is_shown());
         let (mut place, mut loaded) = kept.load(profile, &self.scenes, &session_of, first)?;
+        let pictures = pictures.with_lassos(&loaded.scene())?;
         let regions = pictures.regions().clone();
         regions.settle(&mut loaded)?;
         let scene = loaded.scene();

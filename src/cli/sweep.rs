@@ -170,8 +170,8 @@ impl Sweep {
     ) -> Result<(), Failure> {
         let SweepPlan {
             settings,
-            regions,
-            views,
+            mut regions,
+            mut views,
             moving,
             frames,
         } = plan;
@@ -180,6 +180,7 @@ impl Sweep {
         let example = (regions.example(moving.example()), settings);
         let first = profile.first_frame(device, &self.scenes, example);
         let (mut place, mut loaded) = kept.load(profile, &self.scenes, &session_of, first)?;
+        views = regions.see_lassos(views, &loaded.scene())?;
         regions.settle(&mut loaded)?;
         layer_names::tell_own_clips(&loaded);
         let scene = loaded.scene();

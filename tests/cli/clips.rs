@@ -2,6 +2,8 @@
 
 use std::fs;
 
+use rara::Picture;
+
 use super::{document, done, folder, line, refused, scene};
 
 #[test]
@@ -195,6 +197,53 @@ fn clips_of_layers_are_saved_with_the_frames() {
 }
 
 #[test]
+fn a_lasso_holds_what_the_first_picture_shows_in_it() {
+    let here = folder("lasso");
+    scene(&here);
+    let draw = |name: &str, flags: &str| {
+        let words = format!("render @/scene.ply -o @/{name} --size 64x48 {flags}");
+        done(line(&here, &words));
+        Picture::load(&here.join(name)).expect("a picture")
+    };
+    let whole = draw("whole.exr", "");
+    let kept = draw(
+        "kept.exr",
+        "--lasso 0,0;32,0;32,48;0,48 --save-clip @/kept.json",
+    );
+    let rest = draw("rest.exr", "--lasso !0,0;32,0;32,48;0,48");
+    // Splats are cut where the picture is: what is far from the outline is whole, or away.
+    for (x, y) in [(8, 24), (20, 10), (44, 30), (58, 24)] {
+        let [held, left] = [&kept, &rest].map(|picture| picture.at(x, y));
+        let (shown, away) = if x < 32 { (held, left) } else { (left, held) };
+        let all = whole.at(x, y);
+        assert!((0..4).all(|i| (shown[i] - all[i]).abs() < 2e-3), "{x} {y}");
+        assert!(away[3] < 2e-3, "{x} {y}: {away:?}");
+    }
+    let again = draw("again.exr", "--clip-file @/kept.json");
+    assert!(again == kept, "the cone was saved");
+    let turned = "--eye 4,0,0 --target 0,0,0";
+    let from_aside = draw("aside.exr", &format!("{turned} --clip-file @/kept.json"));
+    let uncut = draw("aside_whole.exr", turned);
+    assert!(from_aside != uncut);
+    for (flags, says) in [
+        ("--lasso 0,0;32,0", "three corners"),
+        ("--lasso 0,0;9,9;9,0;0,9", "edges that cross"),
+        ("--lasso 0,0;9", "'9' is not a corner"),
+    ] {
+        refused(
+            &line(&here, &format!("render @/scene.ply -o @/a.png {flags}")),
+            2,
+            says,
+        );
+    }
+    let plot = r#"{"type": "Polygon", "coordinates": [[[-0.5, -0.5], [0.6, -0.4], [0, 0.5]]]}"#;
+    fs::write(here.join("plot.geojson"), plot).unwrap();
+    let of_file = draw("file.exr", "--clip polygon:z=-1..1;@/plot.geojson");
+    let typed = draw("typed.exr", "--clip polygon:z=-1..1;-.5,-.5;.6,-.4;0,.5");
+    assert!(of_file == typed);
+}
+
+#[test]
 fn layers_have_names_and_clips_of_their_own() {
     let here = folder("named_layers");
     scene(&here);
@@ -254,6 +303,12 @@ fn layers_have_names_and_clips_of_their_own() {
         ),
         ("{\"layers\": [{\"path\": \"gone.ply\"}]}", "gone.ply"),
         ("{\"layers\": [{\"file\": \"scene.ply\"}]}", "file"),
+        (
+            "{\"layers\": [{\"path\": \"scene.ply\", \"opacity\": 3}]}",
+            "layer 0: the opacity of layer 'scene' is 3; give 0 to 1",
+        ),
+        ("[]", "expected an object whose \"layers\""),
+        ("nonsense", "this is not valid JSON"),
     ] {
         fs::write(here.join("list.json"), text).unwrap();
         refused(&line(&here, "info @/list.json"), 1, words);

@@ -43,6 +43,33 @@ fn every_shape_is_moved_turned_and_scaled_and_drawn_again() {
 }
 
 #[test]
+fn a_lasso_keeps_what_it_holds_and_is_moved_as_shapes_are() {
+    let folder = folder("lasso");
+    let Some(display) = Display::start(&folder) else {
+        return;
+    };
+    let mut viewer = Viewer::start(
+        &display,
+        &folder,
+        "--size 160x120 --mode hard --background 0.1,0.2,0.3",
+    );
+    let whole = viewer.screenshot("whole");
+    viewer.say("lasso 20,10;150,5;75,100");
+    let held = viewer.screenshot("held");
+    assert!(apart(&whole, &held) > 20.0);
+    viewer.say("drag 9,0\nscale 0.8");
+    let moved = viewer.screenshot("moved");
+    assert!(apart(&held, &moved) > 20.0);
+    viewer.say("undo\nundo\nundo");
+    let back = viewer.screenshot("back");
+    assert!(apart(&whole, &back) == 0.0, "nothing is cut any more");
+    let printed = viewer.quit();
+    for name in ["held", "moved"] {
+        draws_again(&folder, name, &printed);
+    }
+}
+
+#[test]
 fn outlines_are_drawn_over_the_window_and_not_into_screenshots() {
     let folder = folder("outlines");
     let Some(display) = Display::start(&folder) else {

@@ -26,7 +26,7 @@ enum Need {
 use Need::{Flag, Other, Two, Value, Without};
 
 /// Something that cuts.
-const CUT: Need = Flag(&["section", "clip", "clip_expr", "clip_file", "from"]);
+const CUT: Need = Flag(&["section", "clip", "clip_expr", "clip_file", "lasso", "from"]);
 
 /// The needs of the flags that have any, by the flags' names in the definitions; where a command has none of the flags
 /// that are needed, it needs nothing. Where a value is needed a note says so, since scripts give such flags to one value
@@ -72,10 +72,13 @@ const NEEDS: &[(&str, Need)] = &[
             "clip_file",
             "section",
             "section",
+            "lasso",
+            "lasso",
             "clip_normal",
             "from",
         ]),
     ),
+    ("lasso", Without("section")),
     ("from", Flag(&["to"])),
     ("to", Flag(&["from"])),
     // How it is drawn.

@@ -45,6 +45,7 @@ fn typed_flag(command: &Command, flag: &Arg) -> Vec<String> {
         "8x8",
         "a.png",
         "a",
+        "0,0;1,0;0,1",
     ];
     let mut values = listed.chain(others.map(String::from));
     let is_understood = |value: &String| {

@@ -14,7 +14,7 @@ use clap::Args;
 use glam::DVec3;
 use rara::scene::Bounds;
 use rara::scene::layers::SceneLayers;
-use rara::{Camera, ClipOp, Scene};
+use rara::{Camera, Clip, ClipOp, Scene};
 use rara_view::viewer::{ClipEditor, Connection, KEYS, SceneView, ViewerDesc, Watch};
 
 use self::host::Program;
@@ -54,24 +54,49 @@ The window keeps the scene's Gaussians in memory, from which it makes slices and
 faces are drawn when the view rests: while something moves, the window shows the scene without them.
 
 Scripts have an action on each line, and # begins a comment. The window shows the result of an
-action before the next one begins:
-  turn DX,DY             degrees          shape on, off, flip, next
-  shift DX,DY            pixels           shape x, y, z        align with an axis; plane: across
-  zoom STEPS                              shape +0.1, -0.1     along its normal, world units
-  move X,Y,Z             world units      shape SHAPE          replaces the held shape
-  camera orbit, fly, reset, next          plane NX,NY,NZ,D     replaces the held shape
-  camera perspective, orthographic        drag DX,DY           the held shape, pixels
-  clip next              of a dropped file     shape plane, box, sphere   puts one there
-  mode none, hard, rara, exact            tilt DX,DY           the held shape, degrees
-  screenshot [FILE]                       scale FACTOR         the held shape
-  resize WxH                              layer N|NAME [on|off], 40%, tint COLOUR|none
-  minimise, restore                       edit next, frame, N|NAME, release
-  timings, flags                          outline on, off
-  keys on, off                            numbers on, off
-  drop FILE                               repeat N ACTION
-  quit                                    undo                 the last change of a clip
-  slice on, off                           edge, rim on, off    marks at the edges of cut faces
-  up x, -x, y, -y, z, -z, X,Y,Z           what is up in the picture"))]
+action before the next one begins.
+
+The view:
+  turn DX,DY                       turns the view, degrees
+  shift DX,DY                      moves sideways, pixels
+  zoom STEPS                       moves nearer, steps of the mouse wheel
+  move X,Y,Z                       moves right, down and forward, world units
+  camera orbit, fly                chooses how the mouse moves the camera
+  camera perspective, orthographic
+  camera reset, next               goes back to the first camera, or takes the next one of the file
+  up x, -x, y, -y, z, -z, X,Y,Z    makes this direction up in the picture
+The clip:
+  shape on, off                    switches the edited clip on or off
+  shape flip                       keeps the other side of the held shape
+  shape next                       takes hold of the next shape of the edited clip
+  shape SHAPE                      replaces the held shape, as in shape sphere:0,0,0,1
+  shape plane, box, sphere         puts one where the held shape is
+  shape x, y, z                    turns the held shape to an axis
+  shape +0.1, -0.1                 moves the held shape along its normal, world units
+  plane NX,NY,NZ,D                 replaces the held shape by a plane
+  drag DX,DY                       moves the held shape, pixels
+  tilt DX,DY                       turns the held shape, degrees
+  scale FACTOR                     makes the held shape larger or smaller
+  edit frame, N|NAME, next         edits the clip of all layers, or the clip that a layer has of its own
+  edit release                     gives the layer that is edited the clip of all layers again
+  clip next                        takes the next clip of a dropped file
+  lasso X,Y;X,Y;...                keeps what this polygon holds, pixels; !X,Y;... what it does not
+  undo                             takes back the last change of a clip
+Layers:
+  layer N|NAME on, off             shows or hides a layer
+  layer N|NAME 40%                 draws it with this share of its opacity
+  layer N|NAME tint COLOUR|none    mixes a colour into it
+The window:
+  mode none, hard, rara, exact
+  outline, slice, edge, rim on|off marks the shapes, and shows cut faces, as the keys B, 7, 8 and 9 do
+  keys, numbers on|off             shows the list of keys, or the clip's numbers
+  screenshot [FILE]                writes a screenshot
+  resize WxH                       gives the window this size, pixels
+  minimise, restore                hides the window, or shows it again
+  timings, flags                   prints the times of the stages, or the flags that draw the picture
+  drop FILE                        opens a file as if it were dropped on the window
+  repeat N ACTION                  does an action N times
+  quit                             closes the window"))]
 pub(super) struct ViewCommand {
     /// File names of screenshots, .png or .exr; {} becomes the number
     #[arg(short, long, value_name = "OUT", default_value = "view_{}.png", value_parser = values::picture_file())]
@@ -142,8 +167,10 @@ impl ViewCommand {
         let display = Connection::open()?;
 
         let (scenes, up) = (self.scenes, camera.up());
+        let expected = (scenes.places().len() as u32, begin.example());
         let load = Box::new(move |watch: Watch<'_>| {
             let mut loaded = scenes.load_watched(&mut |reading| watch(host::progress(reading)))?;
+            let begin = begin.with_lassos(&loaded.scene())?;
             begin.regions().settle(&mut loaded)?;
             let view = begin.view(loaded, up)?;
             Ok(view.notes(flags::typed(&scenes.typed())))
@@ -155,6 +182,7 @@ impl ViewCommand {
             .up(camera.chosen_up())
             .outlined(!self.no_outline)
             .text(!self.no_text)
+            .expected(expected)
             .script(script);
         if follow {
             desc = desc.follow(Some(Box::new(script::follow)));
@@ -188,6 +216,25 @@ impl Begin {
         match self {
             Self::Views(_, regions) => regions,
             Self::Section(sections) => sections.regions(),
+        }
+    }
+
+    /// The same once the scene is known, in which the first picture's lassos hold something.
+    fn with_lassos(self, scene: &Scene<'_>) -> Result<Self, Failure> {
+        Ok(match self {
+            Self::Views(views, mut regions) => {
+                let views = regions.see_lassos(views, scene)?;
+                Self::Views(views, regions)
+            }
+            section => section,
+        })
+    }
+
+    /// The clip of the first picture in an example of a scene.
+    fn example(&self) -> Clip {
+        match self {
+            Self::Views(_, regions) => regions.example(None),
+            Self::Section(sections) => sections.example(),
         }
     }
 

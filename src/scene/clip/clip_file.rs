@@ -13,7 +13,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use super::expression::POLYGON;
 use super::shape_text::{kind, names};
 use super::solid::Kind;
-use super::{Expression, Plane, Prism, Shape};
+use super::{Expression, Plane, Prism, PrismBase, Shape};
 use rara_base::error::{Error, Result};
 use rara_base::json;
 
@@ -55,17 +55,61 @@ struct ClipRecord<'a> {
 /// A prism as JSON has it: the polygon and its holes, each as its corners.
 #[derive(Serialize, Deserialize)]
 struct PrismRecord {
-    axis: String,
+    axis: BaseRecord,
     rings: Vec<Vec<[f64; 2]>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     heights: Option<[f64; 2]>,
+}
+
+/// The space of its corners: the name of an axis, a direction, or an eye.
+#[derive(Serialize, Deserialize)]
+#[serde(
+    untagged,
+    expecting = "an axis is one of x, y and z, a direction of three numbers, or an object of eye, right and down"
+)]
+enum BaseRecord {
+    Axis(String),
+    Direction([f64; 3]),
+    Eye {
+        eye: [f64; 3],
+        right: [f64; 3],
+        down: [f64; 3],
+    },
+}
+
+impl From<&PrismBase> for BaseRecord {
+    fn from(base: &PrismBase) -> Self {
+        match base {
+            PrismBase::Axis(name) => Self::Axis(name.clone()),
+            PrismBase::Direction(direction) => Self::Direction(direction.to_array()),
+            PrismBase::Eye { eye, right, down } => Self::Eye {
+                eye: eye.to_array(),
+                right: right.to_array(),
+                down: down.to_array(),
+            },
+        }
+    }
+}
+
+impl From<BaseRecord> for PrismBase {
+    fn from(record: BaseRecord) -> Self {
+        match record {
+            BaseRecord::Axis(name) => Self::Axis(name),
+            BaseRecord::Direction(direction) => Self::Direction(direction.into()),
+            BaseRecord::Eye { eye, right, down } => Self::Eye {
+                eye: eye.into(),
+                right: right.into(),
+                down: down.into(),
+            },
+        }
+    }
 }
 
 impl From<&Prism> for PrismRecord {
     fn from(prism: &Prism) -> Self {
         let ring = |ring: &Vec<DVec2>| ring.iter().map(|corner| corner.to_array()).collect();
         Self {
-            axis: prism.axis().into(),
+            axis: prism.base().into(),
             rings: prism.rings().iter().map(ring).collect(),
             heights: prism.heights(),
         }
@@ -233,7 +277,7 @@ impl Node {
                     .into_iter()
                     .map(|ring| ring.into_iter().map(DVec2::from).collect())
                     .collect();
-                Expression::Prism(Prism::new(&axis, &rings, heights)?)
+                Expression::Prism(Prism::new(axis.into(), &rings, heights)?)
             }
             Self::Solid(kind, numbers) => Expression::Shape(Shape::new(kind.solid(&numbers)?)?),
         })
@@ -244,7 +288,8 @@ impl Node {
 /// tree, or `"normal"` and `"d"`, a plane. An element with a `"layer"` is the clip of that layer, and `"whole"` as a clip keeps
 /// everything. A node of the tree is `{"all": [...]}`, `{"any": [...]}`, `{"not": ...}` or a shape,
 /// as `{"sphere": {"centre": [x, y, z], "radius": r}}`; quaternions are w, x, y, z. A [`Prism`] is
-/// `{"polygon": {"axis": "z", "rings": [[[x, y], ...], ...], "heights": [low, high]}}`.
+/// `{"polygon": {"axis": "z", "rings": [[[x, y], ...], ...], "heights": [low, high]}}`; its axis may be a direction `[x, y, z]`, or
+/// `{"eye": [x, y, z], "right": [x, y, z], "down": [x, y, z]}`.
 ///
 /// # Errors
 /// [`Error::Io`] if the file can't be read, [`Error::Format`] if it is no such list or empty, or has a shape without size.

@@ -82,21 +82,39 @@ impl Expression {
     /// # Ok::<(), rara::Error>(())
     /// ```
     pub fn shapes_mut(&mut self) -> Vec<&mut Shape> {
-        match self {
-            Self::Shape(shape) => vec![shape],
-            Self::Prism(_) => Vec::new(),
-            Self::All(all) | Self::Any(all) => all.iter_mut().flat_map(Self::shapes_mut).collect(),
-            Self::Not(expression) => expression.shapes_mut(),
-        }
+        let leaves = self.leaves_mut().into_iter();
+        leaves
+            .filter_map(|leaf| match leaf {
+                Self::Shape(shape) => Some(shape),
+                _ => None,
+            })
+            .collect()
     }
 
     /// Returns the shapes of the expression in the order of its text.
     pub fn shapes(&self) -> Vec<Shape> {
+        let shape = |leaf: &Self| match leaf {
+            Self::Shape(shape) => Some(*shape),
+            _ => None,
+        };
+        self.leaves().into_iter().filter_map(shape).collect()
+    }
+
+    /// Returns the shapes and prisms of the expression in the order of its text, each as an expression.
+    pub fn leaves(&self) -> Vec<&Self> {
         match self {
-            Self::Shape(shape) => vec![*shape],
-            Self::Prism(_) => Vec::new(),
-            Self::All(all) | Self::Any(all) => all.iter().flat_map(Self::shapes).collect(),
-            Self::Not(expression) => expression.shapes(),
+            Self::Shape(_) | Self::Prism(_) => vec![self],
+            Self::All(all) | Self::Any(all) => all.iter().flat_map(Self::leaves).collect(),
+            Self::Not(expression) => expression.leaves(),
+        }
+    }
+
+    /// Returns the same to move or replace them.
+    pub fn leaves_mut(&mut self) -> Vec<&mut Self> {
+        match self {
+            Self::Shape(_) | Self::Prism(_) => vec![self],
+            Self::All(all) | Self::Any(all) => all.iter_mut().flat_map(Self::leaves_mut).collect(),
+            Self::Not(expression) => expression.leaves_mut(),
         }
     }
 }
@@ -148,9 +166,7 @@ impl<'a> TextReader<'a> {
             "" => self.refuse("a shape, all(...), any(...) or not(...) is missing"),
             POLYGON => {
                 let text = self.numbers();
-                let prism =
-                    |text: &str| Prism::read(text.split_once(':').map_or("", |(_, rest)| rest));
-                self.part(text, prism).map(Expression::Prism)
+                self.part(text, prism)
             }
             name if kind(name).is_some() => self.shape(),
             name => self.refuse(format!(
@@ -185,6 +201,16 @@ impl<'a> TextReader<'a> {
         self.has_shares |= at_shares;
         Ok(Expression::Shape(shape))
     }
+}
+
+/// Reads a prism, or those of a file's polygons.
+fn prism(text: &str) -> Result<Expression> {
+    let text = text.split_once(':').map_or("", |(_, rest)| rest);
+    #[cfg(feature = "json")]
+    if let Some(prisms) = super::geojson::of_file(text) {
+        return prisms;
+    }
+    Prism::read(text).map(Expression::Prism)
 }
 
 #[cfg(test)]

@@ -4,6 +4,8 @@ mod between;
 #[cfg(feature = "json")]
 mod clip_file;
 mod expression;
+#[cfg(feature = "json")]
+mod geojson;
 mod outline;
 mod parameter;
 mod placed;
@@ -26,7 +28,9 @@ pub use clip_file::{NamedClip, clips_from_json, clips_to_json, load_clips};
 pub use expression::Expression;
 pub use parameter::Parameter;
 pub use plane::Plane;
-pub use prism::Prism;
+#[doc(hidden)]
+pub use prism::rings;
+pub use prism::{Prism, PrismBase};
 pub use quadric::Quadric;
 pub use shape::Shape;
 #[doc(hidden)]

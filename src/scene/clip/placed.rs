@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::parameter::Parameter;
-use super::{Clip, Plane, Shape};
+use super::{Clip, Expression, Plane, Shape};
 use crate::placement::Placement;
 use rara_base::error::Result;
 
@@ -47,6 +47,24 @@ impl Shape {
             [Parameter::Point(centre), ..] => centre,
             _ => near,
         }
+    }
+}
+
+impl Expression {
+    /// Returns the region after it was scaled, then turned, then moved, as a scene with this placement is.
+    ///
+    /// # Errors
+    /// The errors of [`Shape::placed`].
+    pub fn placed(&self, placement: &Placement) -> Result<Self> {
+        let mut placed = self.clone();
+        for leaf in placed.leaves_mut() {
+            match leaf {
+                Self::Shape(shape) => *shape = shape.placed(placement)?,
+                Self::Prism(prism) => *prism = prism.placed(placement)?,
+                Self::All(_) | Self::Any(_) | Self::Not(_) => {}
+            }
+        }
+        Ok(placed)
     }
 }
 

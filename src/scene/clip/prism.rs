@@ -1,23 +1,27 @@
-//! Prisms over polygons: regions whose cross-section along an axis is a simple polygon with holes.
+//! Prisms over polygons: regions whose cross-section along an axis is a simple polygon with holes, and cones over polygons of a
+//! picture.
 
 use std::cmp::Ordering;
 use std::fmt;
 
-use glam::{DVec2, DVec3};
+use glam::{DMat2, DMat3, DQuat, DVec2, DVec3};
 
 use super::{Clip, ClipOp, Plane};
 use crate::axis::Axis;
+use crate::camera::{Camera, Projection};
+use crate::placement::Placement;
 use crate::text_reader::{joined, number};
 use rara_base::error::{Error, Result};
 
 /// The points whose place across an axis is inside a polygon, and outside of all its holes: without end along the axis, or between
 /// two heights. It parses from the text that follows `polygon:`, as `z;0,0;2,0;2,1;0,1` or, with heights and a hole,
-/// `z=-1..4;0,0;9,0;9,9;0,9|3,3;6,3;6,6`. The corners are (x, y) across z, (x, z) across y and (y, z) across x, world units.
+/// `z=-1..4;0,0;9,0;9,9;0,9|3,3;6,3;6,6`. The corners are (x, y) across z, (x, z) across y and (y, z) across x, world units. The axis
+/// may be any direction, as `0,0.6,0.8`: its corners are those across the nearest axis, turned with it the shortest way.
+///
+/// A prism may also be the cone of all lines of sight through a polygon in a picture: see [`of_picture`](Self::of_picture).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Prism {
-    /// The axis, as it was written.
-    name: String,
-    along: DVec3,
+    base: PrismBase,
     /// The polygon and its holes, each as its corners.
     rings: Vec<Vec<DVec2>>,
     heights: Option<[f64; 2]>,
@@ -25,27 +29,104 @@ pub struct Prism {
     clip: Clip,
 }
 
+/// The space in which the corners of a prism's polygon lie.
+#[derive(Debug, Clone, PartialEq)]
+pub enum PrismBase {
+    /// An axis of the scene, as it was written: one of `x`, `y` and `z` or of their anatomical names.
+    Axis(String),
+    /// Any direction, which is not zero.
+    Direction(DVec3),
+    /// An eye and the axes of its picture, right, down and forward, of length 1 and perpendicular to each other. A corner (u, v) is
+    /// the line of sight through `eye + forward + u right + v down`; heights are depths, and nothing behind the eye is kept.
+    Eye {
+        /// The place of the eye, world units.
+        eye: DVec3,
+        /// The direction to the right in the picture.
+        right: DVec3,
+        /// The direction down in the picture.
+        down: DVec3,
+    },
+}
+
+/// The axes of the corners' numbers, the axis of the heights, and the place where all edges' planes meet, if they do.
+struct Frame {
+    u: DVec3,
+    v: DVec3,
+    along: DVec3,
+    eye: Option<DVec3>,
+}
+
+impl PrismBase {
+    fn frame(&self) -> Result<Frame> {
+        let invalid = |what: &str| Err(Error::Invalid(what.into()));
+        let (u, v, along, eye) = match self {
+            Self::Axis(name) => {
+                let named = Axis::parse(name).filter(|_| !name.contains('!'));
+                let Some(along) = named.map(|axis| axis.along) else {
+                    return Err(Error::Invalid(format!(
+                        "a polygon across '{name}': use a direction such as 0,0.6,0.8, or one of the axes x, y, z, sagittal, coronal \
+                         and axial"
+                    )));
+                };
+                let [u, v] = across(along);
+                (u, v, along, None)
+            }
+            Self::Direction(direction) => {
+                let Some(along) = direction.try_normalize() else {
+                    return invalid(
+                        "a polygon across a direction that is zero or not finite: give x,y,z",
+                    );
+                };
+                // The direction is turned from the nearest axis, as which its opposite counts.
+                let sizes = along.abs();
+                let axis = match () {
+                    () if sizes.z >= sizes.x.max(sizes.y) => DVec3::Z,
+                    () if sizes.y >= sizes.x => DVec3::Y,
+                    () => DVec3::X,
+                };
+                let turn = DQuat::from_rotation_arc(axis * along.dot(axis).signum(), along);
+                let [u, v] = across(axis).map(|one| turn * one);
+                (u, v, along, None)
+            }
+            Self::Eye { eye, right, down } => {
+                let along = right.cross(*down);
+                let axes = DMat3::from_cols(*right, *down, along);
+                let is_rotation = (axes.transpose() * axes).abs_diff_eq(DMat3::IDENTITY, 1e-6);
+                if !(eye.is_finite() && is_rotation) {
+                    return invalid(
+                        "a polygon of a picture needs a finite eye, and directions to the right and down that are perpendicular and of length 1",
+                    );
+                }
+                (*right, *down, along, Some(*eye))
+            }
+        };
+        Ok(Frame { u, v, along, eye })
+    }
+}
+
+/// Two axes across one of the scene's: those of a corner's numbers.
+fn across(along: DVec3) -> [DVec3; 2] {
+    match along {
+        DVec3::X => [DVec3::Y, DVec3::Z],
+        DVec3::Y => [DVec3::X, DVec3::Z],
+        _ => [DVec3::X, DVec3::Y],
+    }
+}
+
 impl Prism {
     /// How it is written as text, and what that means: a sentence, as [`Solid::usages`](super::Solid::usages) has them.
-    pub const USAGE: &str = "polygon:AXIS;u,v;u,v;... is the prism along an axis over a polygon with these corners, between two \
-                             heights if written polygon:z=0..2;..., and a | begins the corners of a hole.";
+    pub const USAGE: &str = "polygon:AXIS;u,v;u,v;... is the prism along an axis or a direction x,y,z over a polygon with these corners, \
+                             between two heights if written polygon:z=0..2;..., and a | begins the corners of a hole. \
+                             polygon:FILE and polygon:AXIS;FILE take the corners from a .geojson file.";
 
-    /// Makes the prism of a polygon and its holes across an axis, one of `x`, `y` and `z` or of their anatomical names. A ring may
-    /// repeat its first corner at its end.
+    /// Makes the prism of a polygon and its holes. A ring may repeat its first corner at its end.
     ///
     /// # Errors
     /// [`Error::Invalid`] for another axis, for a ring of fewer than three corners or without an area, for rings whose edges cross or
     /// touch, for a hole that is not in the polygon, and where the first height is not below the second.
-    pub fn new(axis: &str, rings: &[Vec<DVec2>], heights: Option<[f64; 2]>) -> Result<Self> {
+    pub fn new(base: PrismBase, rings: &[Vec<DVec2>], heights: Option<[f64; 2]>) -> Result<Self> {
         let invalid = |what: String| Err(Error::Invalid(format!("a polygon {what}")));
-        let Some(along) = Axis::parse(axis)
-            .filter(|_| !axis.contains('!'))
-            .map(|axis| axis.along)
-        else {
-            return invalid(format!(
-                "across '{axis}': use one of the axes x, y, z, sagittal, coronal and axial"
-            ));
-        };
+        let frame = base.frame()?;
         if let Some([low, high]) = heights
             && low.partial_cmp(&high) != Some(Ordering::Less)
         {
@@ -58,6 +139,9 @@ impl Prism {
             return invalid("needs corners, as in polygon:z;0,0;2,0;2,1".into());
         };
         for (number, ring) in cleaned.iter().enumerate() {
+            if let Some(corner) = ring.iter().find(|corner| !corner.is_finite()) {
+                return invalid(format!("has a corner that is not finite: {corner}"));
+            }
             if ring.len() < 3 {
                 return invalid(format!(
                     "needs three corners that are not in line; {} has fewer",
@@ -79,16 +163,53 @@ impl Prism {
                 called(number)
             ));
         }
-        let mut prism = Self {
-            name: axis.into(),
-            along,
+        let clip = frame.lowered(&cleaned, heights)?;
+        clip.check()?;
+        Ok(Self {
+            base,
             rings: rings.to_vec(),
             heights,
-            clip: Clip::default(),
+            clip,
+        })
+    }
+
+    /// Makes the region that a polygon drawn in a camera's picture holds, as by a lasso: the cone of all lines of sight through it, or
+    /// a prism along the view axis of an orthographic camera. The corners are in pixels from the picture's top left corner, of which
+    /// the first pixel's centre is (0.5, 0.5).
+    ///
+    /// # Errors
+    /// The errors of [`new`](Self::new).
+    pub fn of_picture(camera: &Camera, rings: &[Vec<DVec2>]) -> Result<Self> {
+        let (focal, centre) = (
+            DVec2::new(camera.fx, camera.fy),
+            DVec2::new(camera.cx, camera.cy),
+        );
+        let [right, down, forward] = [0, 1, 2].map(|row| camera.rotation.row(row));
+        let mapped = |map: &dyn Fn(DVec2) -> DVec2| {
+            let corner = |pixel: &DVec2| map((pixel - centre) / focal);
+            let ring = |ring: &Vec<DVec2>| ring.iter().map(corner).collect();
+            rings.iter().map(ring).collect::<Vec<Vec<DVec2>>>()
         };
-        prism.clip = prism.lowered(&cleaned)?;
-        prism.clip.check()?;
-        Ok(prism)
+        if camera.projection == Projection::Perspective {
+            // Of a mirrored picture the corners are mirrored instead.
+            let sign = right.cross(down).dot(forward).signum();
+            let rings = mapped(&|corner| DVec2::new(sign * corner.x, corner.y));
+            let base = PrismBase::Eye {
+                eye: camera.eye,
+                right: sign * right,
+                down,
+            };
+            return Self::new(base, &rings, None);
+        }
+        let base = PrismBase::Direction(forward);
+        let frame = base.frame()?;
+        // The numbers of the scene's space, in the axes of the direction.
+        let turn = DMat2::from_cols(
+            DVec2::new(right.dot(frame.u), right.dot(frame.v)),
+            DVec2::new(down.dot(frame.u), down.dot(frame.v)),
+        );
+        let eye = DVec2::new(camera.eye.dot(frame.u), camera.eye.dot(frame.v));
+        Self::new(base, &mapped(&|corner| eye + turn * corner), None)
     }
 
     /// The region that it keeps.
@@ -96,12 +217,18 @@ impl Prism {
         self.clip.clone()
     }
 
-    /// The axis, as it was written.
-    pub fn axis(&self) -> &str {
-        &self.name
+    /// The space of the corners.
+    pub fn base(&self) -> &PrismBase {
+        &self.base
     }
 
-    /// The polygon and its holes, each as its corners, world units.
+    /// The direction of the axis, or of the middle of the picture.
+    pub fn along(&self) -> DVec3 {
+        let frame = self.base.frame();
+        frame.map_or(DVec3::Z, |frame| frame.along)
+    }
+
+    /// The polygon and its holes, each as its corners, world units, or of a picture's cone shares of the depth.
     pub fn rings(&self) -> &[Vec<DVec2>] {
         &self.rings
     }
@@ -111,10 +238,93 @@ impl Prism {
         self.heights
     }
 
-    /// The prism at a share of the way to another one of as many corners along the same axis, if that is one.
+    /// The edges of its outline between two heights, or between its own where these lie within.
+    pub fn edges(&self, [low, high]: [f64; 2]) -> Vec<[DVec3; 2]> {
+        let Ok(frame) = self.base.frame() else {
+            return Vec::new(); // it was one when the prism was made
+        };
+        let own = self.heights.unwrap_or([low, high]);
+        let mut heights = [own[0].max(low), own[1].min(high)];
+        if frame.eye.is_some() {
+            heights[0] = heights[0].max(1e-2 * heights[1]); // at the eye all edges meet
+        }
+        let mut edges = Vec::new();
+        for ring in &self.rings {
+            for (at, corner) in ring.iter().enumerate() {
+                let next = ring[(at + 1) % ring.len()];
+                edges.push(heights.map(|height| frame.point(*corner, height)));
+                edges.extend(
+                    heights.map(|height| [*corner, next].map(|one| frame.point(one, height))),
+                );
+            }
+        }
+        edges
+    }
+
+    /// Returns the prism after it was scaled, then turned, then moved, as a scene with this placement is.
+    ///
+    /// # Errors
+    /// The errors of [`new`](Self::new), where numbers overflow.
+    pub fn placed(&self, placement: &Placement) -> Result<Self> {
+        let (turn, scale) = (placement.rotation(), placement.scale());
+        let frame = self.base.frame()?;
+        let scaled = |heights: [f64; 2]| heights.map(|height| scale * height);
+        if let PrismBase::Eye { eye, right, down } = self.base {
+            let base = PrismBase::Eye {
+                eye: placement.to_world(eye),
+                right: turn * right,
+                down: turn * down,
+            };
+            return Self::new(base, &self.rings, self.heights.map(scaled));
+        }
+        let along = turn * frame.along;
+        let base = match along == frame.along {
+            true => self.base.clone(),
+            false => PrismBase::Direction(along),
+        };
+        let placed = base.frame()?;
+        let corner = |corner: &DVec2| {
+            let point = placement.to_world(frame.point(*corner, 0.0));
+            DVec2::new(point.dot(placed.u), point.dot(placed.v))
+        };
+        let ring = |ring: &Vec<DVec2>| ring.iter().map(corner).collect();
+        let rings: Vec<Vec<DVec2>> = self.rings.iter().map(ring).collect();
+        let start = placement.position().dot(placed.along);
+        let heights = self.heights.map(scaled);
+        Self::new(
+            base,
+            &rings,
+            heights.map(|ends| ends.map(|end| start + end)),
+        )
+    }
+
+    /// The prism's middle, world units: that of the bounds of its corners, halfway between its heights or else as high as `near`.
+    pub fn middle(&self, near: DVec3) -> DVec3 {
+        let corners = || self.rings.iter().flatten().copied();
+        let low = corners().reduce(DVec2::min).unwrap_or_default();
+        let high = corners().reduce(DVec2::max).unwrap_or_default();
+        let height = match self.heights {
+            Some([low, high]) => low.midpoint(high),
+            None => self.height(near),
+        };
+        let frame = self.base.frame();
+        frame.map_or(near, |frame| frame.point(low.midpoint(high), height))
+    }
+
+    /// The height of a point along the axis, or its depth.
+    pub fn height(&self, point: DVec3) -> f64 {
+        let frame = self.base.frame();
+        frame.map_or(0.0, |frame| {
+            frame.along.dot(point - frame.eye.unwrap_or_default())
+        })
+    }
+
+    /// The prism at a share of the way to another one of as many corners in the same space, if that is one.
     pub(super) fn between(&self, other: &Self, share: f64) -> Option<Result<Self>> {
         let counts = |prism: &Self| prism.rings.iter().map(Vec::len).collect::<Vec<_>>();
-        if self.along != other.along || counts(self) != counts(other) {
+        if self.base.frame().ok()?.axes() != other.base.frame().ok()?.axes()
+            || counts(self) != counts(other)
+        {
             return None;
         }
         let mix = |a: f64, b: f64| a + (b - a) * share;
@@ -128,50 +338,99 @@ impl Prism {
             a.iter().zip(b).map(|(a, b)| a.lerp(*b, share)).collect()
         };
         let rings: Vec<Vec<DVec2>> = pairs.map(ring).collect();
-        Some(Self::new(&self.name, &rings, heights))
+        Some(Self::new(self.base.clone(), &rings, heights))
     }
 
     /// Reads the text that follows `polygon:`.
     pub(super) fn read(text: &str) -> Result<Self> {
-        let (head, corners) = text.split_once(';').unwrap_or((text, ""));
-        let (axis, heights) = match head.split_once('=') {
-            None => (head, None),
-            Some((axis, heights)) => {
-                let (low, high) = heights.split_once("..").ok_or_else(|| {
-                    Error::Invalid(format!(
-                        "'{heights}' is not two heights; give them as in polygon:z=0..2;..."
-                    ))
-                })?;
-                (axis, Some([number(low)?, number(high)?]))
-            }
-        };
-        let corner = |text: &str| {
-            let pair = text.split_once(',').ok_or_else(|| {
+        let (base, heights, corners) = head(text)?;
+        Self::new(base, &rings(corners)?, heights)
+    }
+}
+
+/// Reads a polygon and its holes: corners as `0,0;2,0;2,1`, with a `|` before those of each hole.
+///
+/// # Errors
+/// [`Error::Invalid`] for a corner that is not two numbers.
+pub fn rings(text: &str) -> Result<Vec<Vec<DVec2>>> {
+    let corner = |text: &str| {
+        let pair = text.split_once(',').ok_or_else(|| {
+            Error::Invalid(format!(
+                "'{text}' is not a corner; give two numbers with a comma between them, and a ; between corners"
+            ))
+        })?;
+        Ok(DVec2::new(number(pair.0)?, number(pair.1)?))
+    };
+    let ring = |text: &str| text.split(';').map(corner).collect::<Result<Vec<_>>>();
+    match text.trim() {
+        "" => Ok(Vec::new()),
+        all => all.split('|').map(ring).collect(),
+    }
+}
+
+/// The space, the heights and the rest of the text that follows `polygon:`.
+pub(super) fn head(text: &str) -> Result<(PrismBase, Option<[f64; 2]>, &str)> {
+    let (head, rest) = text.split_once(';').unwrap_or((text, ""));
+    let (base, heights) = match head.split_once('=') {
+        None => (head, None),
+        Some((base, heights)) => {
+            let (low, high) = heights.split_once("..").ok_or_else(|| {
                 Error::Invalid(format!(
-                    "'{text}' is not a corner; give two numbers with a comma between them, and a ; between corners"
+                    "'{heights}' is not two heights; give them as in polygon:z=0..2;..."
                 ))
             })?;
-            Ok(DVec2::new(number(pair.0)?, number(pair.1)?))
-        };
-        let ring = |text: &str| text.split(';').map(corner).collect::<Result<Vec<_>>>();
-        let rings = match corners.trim() {
-            "" => Vec::new(),
-            all => all.split('|').map(ring).collect::<Result<Vec<_>>>()?,
-        };
-        Self::new(axis.trim(), &rings, heights)
+            (base, Some([number(low)?, number(high)?]))
+        }
+    };
+    let vector = |text: &str| -> Result<DVec3> {
+        let numbers: Vec<f64> = text.split(',').map(number).collect::<Result<_>>()?;
+        match numbers[..] {
+            [x, y, z] => Ok(DVec3::new(x, y, z)),
+            _ => Err(Error::Invalid(format!(
+                "'{}' is not a direction; give three numbers",
+                text.trim()
+            ))),
+        }
+    };
+    let base = base.trim();
+    let base = match base.strip_prefix(FROM_EYE) {
+        Some(eye) => {
+            let [eye, right, down] = eye.split('/').collect::<Vec<_>>()[..] else {
+                return Err(Error::Invalid(format!(
+                    "'{base}' is not an eye; give its place and the directions to the right and down: {FROM_EYE}x,y,z/x,y,z/x,y,z"
+                )));
+            };
+            PrismBase::Eye {
+                eye: vector(eye)?,
+                right: vector(right)?,
+                down: vector(down)?,
+            }
+        }
+        None if base.contains(',') => PrismBase::Direction(vector(base)?),
+        None => PrismBase::Axis(base.into()),
+    };
+    Ok((base, heights, rest))
+}
+
+/// The text with which the space of an eye begins.
+const FROM_EYE: &str = "from ";
+
+impl Frame {
+    fn axes(&self) -> (DVec3, DVec3, Option<DVec3>) {
+        (self.u, self.v, self.eye)
     }
 
-    /// Two axes across the prism's own: those of a corner's numbers.
-    fn across(&self) -> [DVec3; 2] {
-        match self.along {
-            DVec3::X => [DVec3::Y, DVec3::Z],
-            DVec3::Y => [DVec3::X, DVec3::Z],
-            _ => [DVec3::X, DVec3::Y],
+    /// The point at a corner's place and a height.
+    fn point(&self, corner: DVec2, height: f64) -> DVec3 {
+        let across = self.u * corner.x + self.v * corner.y;
+        match self.eye {
+            Some(eye) => eye + height * (self.along + across),
+            None => across + height * self.along,
         }
     }
 
     /// The region as planes.
-    fn lowered(&self, rings: &[Vec<DVec2>]) -> Result<Clip> {
+    fn lowered(&self, rings: &[Vec<DVec2>], heights: Option<[f64; 2]>) -> Result<Clip> {
         let mut all = Vec::new();
         for (number, ring) in rings.iter().enumerate() {
             let region = self.region(&formula(ring))?;
@@ -180,11 +439,16 @@ impl Prism {
                 _ => region.complement(),
             });
         }
-        if let Some([low, high]) = self.heights {
-            let ends = [
-                Plane::new(self.along, -low)?,
-                Plane::new(-self.along, high)?,
-            ];
+        let start = self.eye.unwrap_or_default().dot(self.along);
+        let low = heights.map(|heights| heights[0]).or(self.eye.map(|_| 0.0));
+        let mut ends = Vec::new();
+        if let Some(low) = low {
+            ends.push(Plane::new(self.along, -(start + low))?);
+        }
+        if let Some([_, high]) = heights {
+            ends.push(Plane::new(-self.along, start + high)?);
+        }
+        if !ends.is_empty() {
             all.push(Clip::of(ends, ClipOp::And));
         }
         Ok(Clip::joined(all, ClipOp::And))
@@ -193,10 +457,18 @@ impl Prism {
     fn region(&self, formula: &Formula) -> Result<Clip> {
         Ok(match formula {
             Formula::Edge(from, to) => {
-                let [u, v] = self.across();
                 let inward = (to - from).perp();
-                let normal = u * inward.x + v * inward.y;
-                Clip::of([Plane::new(normal, -inward.dot(*from))?], ClipOp::And)
+                let normal = self.u * inward.x + self.v * inward.y;
+                let offset = -inward.dot(*from);
+                let plane = match self.eye {
+                    // It goes through the eye, and through the edge in the picture.
+                    Some(eye) => {
+                        let normal = normal + self.along * offset;
+                        Plane::new(normal, -normal.dot(eye))?
+                    }
+                    None => Plane::new(normal, offset)?,
+                };
+                Clip::of([plane], ClipOp::And)
             }
             Formula::Both(op, parts) => {
                 let parts = parts.iter().map(|part| self.region(part));
@@ -206,10 +478,24 @@ impl Prism {
     }
 }
 
+impl fmt::Display for PrismBase {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let vector = |v: &DVec3| format!("{},{},{}", v.x, v.y, v.z);
+        match self {
+            Self::Axis(name) => f.write_str(name),
+            Self::Direction(direction) => f.write_str(&vector(direction)),
+            Self::Eye { eye, right, down } => {
+                let [eye, right, down] = [eye, right, down].map(vector);
+                write!(f, "{FROM_EYE}{eye}/{right}/{down}")
+            }
+        }
+    }
+}
+
 /// The text that follows `polygon:`.
 impl fmt::Display for Prism {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.name)?;
+        write!(f, "{}", self.base)?;
         if let Some([low, high]) = self.heights {
             write!(f, "={low}..{high}")?;
         }

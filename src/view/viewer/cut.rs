@@ -1,8 +1,8 @@
-//! A clip that is shown, and the one of its shapes that is held.
+//! A clip that is shown, and the one of its shapes that is held: a prism is one of them here.
 
-use glam::DVec3;
-use rara::clip::Expression;
-use rara::{Clip, ClipOp, Placement, Plane, Shape};
+use glam::{DVec2, DVec3};
+use rara::clip::{Expression, Prism};
+use rara::{Camera, Clip, ClipOp, Placement, Plane, Shape};
 
 use super::numbers::stands_at;
 
@@ -92,9 +92,9 @@ impl ClipEditor {
     }
 
     /// All shapes in it, whether it is on or off.
-    pub(super) fn shapes(&self) -> Vec<Shape> {
+    pub(super) fn shapes(&self) -> Vec<&Expression> {
         let expressions = self.expressions.iter();
-        expressions.flat_map(Expression::shapes).collect()
+        expressions.flat_map(Expression::leaves).collect()
     }
 
     /// The number of the held shape among them.
@@ -102,9 +102,10 @@ impl ClipEditor {
         self.held
     }
 
-    pub(super) fn shape(&self) -> Shape {
+    /// The held shape; none in a clip that keeps everything.
+    pub(super) fn shape(&self) -> Option<&Expression> {
         let shapes = self.shapes();
-        shapes[self.held.min(shapes.len() - 1)]
+        shapes.get(self.held).or(shapes.last()).copied()
     }
 
     /// The held shape where its clip keeps what every shape keeps, and what else is in it; `None` where it is within a larger
@@ -136,43 +137,80 @@ impl ClipEditor {
     /// The middle of the held shape; of planes and slabs the point nearest to the middle of the scene when it was taken hold
     /// of, which moves with them.
     pub(super) fn middle(&self) -> DVec3 {
-        self.pivot.unwrap_or(self.shape().middle(self.centre))
+        let middle = match self.shape() {
+            Some(Expression::Shape(shape)) => shape.middle(self.centre),
+            Some(Expression::Prism(prism)) => prism.middle(self.centre),
+            _ => self.centre,
+        };
+        self.pivot.unwrap_or(middle)
     }
 
     pub(super) fn next(&mut self) {
-        self.held = (self.held + 1) % self.shapes().len();
+        self.held = (self.held + 1) % self.shapes().len().max(1);
         self.pivot = None;
     }
 
     /// Puts another shape in the held one's place, and switches the clip on.
     pub(super) fn set(&mut self, shape: Shape) {
         self.pivot = None;
-        self.replace(shape);
+        self.replace(Expression::Shape(inside(shape)));
     }
 
-    fn replace(&mut self, shape: Shape) {
-        let shapes = self.expressions.iter_mut().flat_map(Expression::shapes_mut);
-        if let Some(held) = shapes.into_iter().nth(self.held) {
-            *held = inside(shape);
+    fn replace(&mut self, shape: Expression) {
+        let mut shapes = self.expressions.iter_mut().flat_map(Expression::leaves_mut);
+        match shapes.nth(self.held) {
+            Some(held) => *held = shape,
+            None => {
+                self.held = 0;
+                self.expressions.insert(0, shape);
+            }
         }
         self.on = true;
     }
 
     /// Keeps the other side of the held shape.
     pub(super) fn flip(&mut self) {
-        let shape = self.shape();
-        self.replace(match shape.as_plane() {
-            Some(plane) => plane.flipped().into(),
-            None => shape.complement(),
-        });
+        let mut before = self.held;
+        for expression in &mut self.expressions {
+            if flip(expression, &mut before) {
+                break;
+            }
+        }
+        self.on = true;
     }
 
     /// Scales, turns and moves the held shape. One whose numbers overflow stays where it was.
     pub(super) fn place(&mut self, placement: &Placement) {
-        if let Ok(shape) = self.shape().placed(placement) {
+        if let Some(Ok(shape)) = self.shape().map(|shape| shape.placed(placement)) {
             self.pivot = Some(placement.to_world(self.middle()));
             self.replace(shape);
         }
+    }
+
+    /// Keeps of what is kept what a polygon in a camera's picture holds, px, or what it does not hold.
+    ///
+    /// # Errors
+    /// The errors of [`Prism::of_picture`].
+    pub(super) fn lasso(
+        &mut self,
+        camera: &Camera,
+        (rings, keeps): (&[Vec<DVec2>], bool),
+    ) -> rara::Result<()> {
+        let prism = Expression::Prism(Prism::of_picture(camera, rings)?);
+        let added = match keeps {
+            true => prism,
+            false => Expression::Not(Box::new(prism)),
+        };
+        if !self.on {
+            self.expressions.clear();
+        } else if self.op == ClipOp::Or && self.expressions.len() > 1 {
+            let all = std::mem::take(&mut self.expressions);
+            self.expressions.push(Expression::Any(all));
+        }
+        self.expressions.push(added);
+        (self.op, self.on, self.pivot) = (ClipOp::And, true, None);
+        self.held = self.shapes().len() - 1;
+        Ok(())
     }
 
     /// A plane through the middle of the scene, across an axis.
@@ -183,18 +221,50 @@ impl ClipEditor {
     /// A few words on the held shape, for the title: `plane at 0.5000`, `outside of sphere 2 of 3`.
     pub(super) fn words(&self) -> String {
         let (shape, count) = (self.shape(), self.shapes().len());
-        let mut words = match shape.is_outside() {
-            true => "outside of ".to_owned(),
-            false => String::new(),
+        let mut words = match shape {
+            Some(Expression::Shape(shape)) if shape.is_outside() => {
+                format!("outside of {}", shape.solid().name())
+            }
+            Some(Expression::Shape(shape)) => shape.solid().name().to_owned(),
+            Some(_) => "polygon".into(),
+            None => "whole".into(),
         };
-        words += shape.solid().name();
         if count > 1 {
             words += &format!(" {} of {count}", self.held + 1);
         }
-        if let Some(plane) = shape.as_plane() {
+        if let Some(plane) = shape.and_then(Expression::as_plane) {
             words += &format!(" at {:.4}", stands_at(&plane));
         }
         words
+    }
+}
+
+/// Makes an expression keep the other side of its shape of this number, which is counted down; says whether it has that one.
+fn flip(expression: &mut Expression, before: &mut usize) -> bool {
+    match expression {
+        Expression::All(all) | Expression::Any(all) => all.iter_mut().any(|one| flip(one, before)),
+        Expression::Not(inner) if *before == 0 && matches!(**inner, Expression::Prism(_)) => {
+            let kept = (**inner).clone();
+            *expression = kept;
+            true
+        }
+        Expression::Not(inner) => flip(inner, before),
+        Expression::Shape(_) | Expression::Prism(_) if *before > 0 => {
+            *before -= 1;
+            false
+        }
+        Expression::Shape(shape) => {
+            *shape = match shape.as_plane() {
+                Some(plane) => plane.flipped().into(),
+                None => shape.complement(),
+            };
+            true
+        }
+        Expression::Prism(_) => {
+            *expression = Expression::Not(Box::new(expression.clone()));
+            true
+        }
+        _ => false,
     }
 }
 

@@ -3,6 +3,7 @@
 use std::time::{Duration, Instant};
 
 use super::failure::Failure;
+use super::lasso;
 use super::loading::Loading;
 use super::outlines;
 use super::overlay::OverlayScene;
@@ -44,10 +45,11 @@ impl Viewer {
         } = &mut self.scenery;
         let before = clips.apply(&mut self.windowed)?;
         let clip = clips.frame.clip();
-        let lines = match self.manner.outlined {
+        let mut lines = match self.manner.outlined {
             true => outlines::lines(clips, &camera, (*centre, *radius)),
             false => Vec::new(),
         };
+        lines.extend(lasso::lines(&self.drawn, &camera, *radius));
         let plan = FacePlan::new(&self.scenery, &self.manner, &camera);
         let wanted = plan.as_ref().ok().and_then(Option::as_ref);
         let is_covered = self.faces.uncover(&mut self.windowed, wanted);

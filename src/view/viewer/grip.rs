@@ -3,7 +3,7 @@
 use std::f64::consts::FRAC_1_SQRT_2;
 
 use glam::{DQuat, DVec2, DVec3};
-use rara::clip::Parameter;
+use rara::clip::{Expression, Parameter};
 use rara::{Camera, Placement, Plane, Projection, Shape};
 
 use super::action::{GripAction, Kind};
@@ -30,7 +30,7 @@ impl ClipEditor {
 
     /// Moves the held shape along its normal, world units; one without a normal goes away from the eye.
     pub(super) fn go(&mut self, by: f64, camera: &Camera) {
-        let along = normal(&self.shape()).unwrap_or(camera.rotation.row(2));
+        let along = normal(self.shape()).unwrap_or(camera.rotation.row(2));
         self.shift(by * along);
     }
 
@@ -42,7 +42,7 @@ impl ClipEditor {
         // A point behind the eye has no place in the picture.
         at.z = at.z.max(1e-2 * at.length()).max(f64::MIN_POSITIVE);
         let is_flat = camera.projection == Projection::Orthographic;
-        let Some(along) = normal(&self.shape()) else {
+        let Some(along) = normal(self.shape()) else {
             let depth = if is_flat { 1.0 } else { at.z };
             let by = pixels * depth / focal;
             return self.shift(camera.rotation.transpose() * by.extend(0.0));
@@ -80,11 +80,13 @@ impl ClipEditor {
     pub(super) fn align(&mut self, axis: DVec3) {
         let arc = |from: DVec3| DQuat::from_rotation_arc(from, axis);
         let mut ends = Vec::new();
-        for parameter in values(&self.shape()) {
+        let is_plane = self.shape().and_then(Expression::as_plane).is_some();
+        if let Some(Expression::Prism(prism)) = self.shape() {
+            return self.turn(arc(prism.along()));
+        }
+        for parameter in values(self.shape()) {
             match parameter {
-                Parameter::Plane(_) if self.shape().as_plane().is_some() => {
-                    return self.set(self.across(axis));
-                }
+                Parameter::Plane(_) if is_plane => return self.set(self.across(axis)),
                 Parameter::Plane(plane) => return self.turn(arc(plane.normal())),
                 Parameter::Rotation(rotation) => {
                     return self.turn(arc(DVec3::X) * rotation.inverse());
@@ -134,16 +136,19 @@ impl ClipEditor {
 }
 
 /// The normal of what has a single one.
-fn normal(shape: &Shape) -> Option<DVec3> {
+fn normal(shape: Option<&Expression>) -> Option<DVec3> {
     values(shape).find_map(|parameter| match parameter {
         Parameter::Plane(plane) => Some(plane.normal()),
         _ => None,
     })
 }
 
-fn values(shape: &Shape) -> impl Iterator<Item = Parameter> {
-    let named = shape.solid().parameters().into_iter();
-    named.map(|(_, parameter)| parameter)
+fn values(shape: Option<&Expression>) -> impl Iterator<Item = Parameter> + use<> {
+    let named = match shape {
+        Some(Expression::Shape(shape)) => shape.solid().parameters(),
+        _ => Vec::new(),
+    };
+    named.into_iter().map(|(_, parameter)| parameter)
 }
 
 #[cfg(test)]

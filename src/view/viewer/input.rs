@@ -18,6 +18,7 @@ Mouse:
   right drag                   move the held shape; a plane or slab moves along its normal
   Shift+right drag             turn the held shape about its middle
   Shift+wheel                  make the held shape larger or smaller
+  Ctrl+left drag               keep what the outline holds; with Shift what it does not hold
 Keys:
   Tab                          orbit about the scene, or fly
   W A S D Q E                  forward, left, back, right, down, up (Shift: slowly)
@@ -36,7 +37,7 @@ Keys:
   Backspace or Ctrl+Z          take back the last change of a clip
   B                            outlines of the shapes on or off
   F1 to F9                     layer 1 to 9 on or off (Shift: its opacity; Ctrl: its tint)
-  L, U                         edit the clip of the next layer, or the frame's; remove the layer's
+  L, U                         edit the next layer's own clip, or that of all layers; remove the own
   M                            show or hide the mode and the clip's numbers
   C or F12                     screenshot
   F                            print the flags that draw this picture on the terminal
@@ -61,6 +62,8 @@ pub(super) struct Input {
     cursor: Option<DVec2>,
     /// Keys that move for as long as they are held.
     held: HashSet<KeyCode>,
+    /// True while an outline is drawn.
+    draws: bool,
 }
 
 impl Input {
@@ -116,11 +119,13 @@ impl Input {
     }
 
     /// Handles a mouse button that goes down or up.
-    pub(super) fn button(&mut self, button: MouseButton, state: ElementState) {
+    pub(super) fn button(&mut self, button: MouseButton, state: ElementState) -> Option<Action> {
         match state {
             ElementState::Pressed => self.buttons.insert(button),
             ElementState::Released => self.buttons.remove(&button),
         };
+        let ends = button == MouseButton::Left && std::mem::take(&mut self.draws);
+        ends.then(|| Action::Drawn(!self.modifiers.shift_key()))
     }
 
     /// Handles a move of the mouse, in a window of this height.
@@ -137,6 +142,10 @@ impl Input {
                 GripAction::Drag(by)
             };
             return Some(Action::Held(action));
+        }
+        if down(MouseButton::Left) && (self.draws || self.modifiers.control_key()) {
+            self.draws = true;
+            return Some(Action::Draw(to));
         }
         if down(MouseButton::Middle) || down(MouseButton::Left) && shift {
             return Some(Action::Shift(by));

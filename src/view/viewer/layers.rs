@@ -3,7 +3,7 @@
 use std::mem::{Discriminant, discriminant};
 use std::time::{Duration, Instant};
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use rara::{Camera, Clip, ClipOp, Layer, LayerState, Scene};
 
 use super::action::{Edit, GripAction, Step, Which};
@@ -235,21 +235,39 @@ impl Clips {
         if action != GripAction::Next {
             self.remember(Some(action));
         }
-        let cut = match self.edited {
+        if action == GripAction::Next && self.edited().is_none() {
+            return;
+        }
+        self.changing().act(action, camera, radius);
+    }
+
+    /// Keeps of what the edited clip keeps what a polygon in a camera's picture holds, px, or what it does not hold.
+    ///
+    /// # Errors
+    /// [`Failure::Asked`] where there is no such polygon, as one that crosses itself.
+    pub(super) fn lasso(
+        &mut self,
+        camera: &Camera,
+        outline: (&[Vec<DVec2>], bool),
+    ) -> Result<(), Failure> {
+        self.remember(None);
+        let done = self.changing().lasso(camera, outline);
+        done.map_err(|error| Failure::Asked(error.to_string()))
+    }
+
+    /// The edited clip, which is about to change; a layer without one gets one.
+    fn changing(&mut self) -> &mut ClipEditor {
+        match self.edited {
             None => {
                 self.changed |= self.frame.has_section();
                 &mut self.frame
             }
             Some(layer) => {
-                let own = &mut self.layers[layer].own;
-                if own.is_none() && action == GripAction::Next {
-                    return;
-                }
                 self.changed = true;
+                let own = &mut self.layers[layer].own;
                 own.get_or_insert_with(|| whole(self.centre))
             }
-        };
-        cut.act(action, camera, radius);
+        }
     }
 
     /// Shows layers, hides them, or whichever they are not.

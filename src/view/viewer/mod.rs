@@ -33,6 +33,7 @@ mod frames;
 mod grip;
 mod host;
 mod input;
+mod lasso;
 mod layers;
 mod loading;
 mod lost;

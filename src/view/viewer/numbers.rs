@@ -3,13 +3,25 @@
 use std::fmt::Write;
 
 use glam::DQuat;
-use rara::clip::Parameter;
-use rara::{Plane, Shape};
+use rara::Plane;
+use rara::clip::{Expression, Parameter};
 
 /// The numbers of a shape, a line each. Lengths are world units, and rotations an axis and degrees about it.
-pub(super) fn lines(shape: &Shape) -> Vec<String> {
+pub(super) fn lines(shape: &Expression) -> Vec<String> {
     let mut lines = Vec::new();
     let mut say = |name: &str, numbers: &[f64]| lines.push(named(name, numbers));
+    if let Expression::Prism(prism) = shape {
+        say("along", &prism.along().to_array());
+        if let Some(heights) = prism.heights() {
+            say("heights", &heights);
+        }
+        let corners: usize = prism.rings().iter().map(Vec::len).sum();
+        lines.push(format!("{:<9} {corners:>10}", "corners"));
+        return lines;
+    }
+    let Expression::Shape(shape) = shape else {
+        return lines;
+    };
     for (name, parameter) in shape.solid().parameters() {
         match parameter {
             Parameter::Plane(plane) => {

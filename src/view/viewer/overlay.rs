@@ -158,7 +158,7 @@ fn lines(clips: &Clips, mode: Mode, stats: Option<&FrameStats>) -> Vec<String> {
     let words = clips.words();
     lines.push(words.unwrap_or_else(|| "nothing is cut; P or a right drag cuts".into()));
     if let Some(cut) = clips.edited().filter(|cut| cut.on) {
-        lines.extend(numbers::lines(&cut.shape()));
+        lines.extend(cut.shape().map(numbers::lines).unwrap_or_default());
     }
     lines
 }

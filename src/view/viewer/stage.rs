@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use rara::clip::NamedClip;
 use rara::{Camera, Clip, Picture, Settings};
 use winit::dpi::PhysicalSize;
@@ -16,6 +16,7 @@ use super::dropped::DroppedFile;
 use super::failure::Failure;
 use super::host::{Host, Shown};
 use super::input::KEYS;
+use super::lasso;
 use super::loading::Loading;
 use super::overlay::Overlay;
 use super::scenery::{FaceView, Manner, SceneView, Scenery};
@@ -52,6 +53,8 @@ pub(super) struct Viewer {
     /// How often something has failed that the window outlives.
     pub(super) warnings: u32,
     pub(super) overlay: Overlay,
+    /// The outline that is being drawn in the picture, px.
+    pub(super) drawn: Vec<DVec2>,
     /// For how many frames the window still says that shaders are compiled.
     pub(super) compiling: u32,
     pub(super) faces: ShownFaces,
@@ -100,6 +103,7 @@ impl Viewer {
             alternatives: (Vec::new(), 0),
             warnings: 0,
             overlay: Overlay::new(manner.text),
+            drawn: Vec::new(),
             compiling: 0,
             faces: ShownFaces::default(),
             last: None,
@@ -233,6 +237,18 @@ impl Viewer {
                 clips.act(action, &camera, *radius);
             }
             Action::Undo => self.scenery.clips.undo(),
+            Action::Draw(to) => self.drawn.push(to),
+            Action::Drawn(keeps) => {
+                let outline = lasso::simplified(&std::mem::take(&mut self.drawn));
+                self.dirty = true;
+                if outline.len() > 2 {
+                    return self.act(Action::Lasso(vec![outline], keeps));
+                }
+            }
+            Action::Lasso(rings, keeps) => {
+                let camera = self.viewpoint.camera(self.picture_size());
+                self.scenery.clips.lasso(&camera, (&rings, keeps))?;
+            }
             Action::Layer(which, visible) => self.scenery.clips.show(&which, visible)?,
             Action::LayerOpacity(which, opacity) => {
                 let text = self.scenery.clips.fade(&which, opacity)?;

@@ -54,7 +54,7 @@ fn polygons_keep_their_inside() {
             };
             let ring: Vec<DVec2> = (0..count).map(corner).collect();
             check(
-                &Prism::new("z", &[ring], None).expect("a star"),
+                &Prism::new(PrismBase::Axis("z".into()), &[ring], None).expect("a star"),
                 &mut random,
             );
         }
@@ -109,8 +109,116 @@ fn what_is_no_simple_polygon_is_refused_by_place() {
         ("z;0,0;1;1,1", "'1' is not a corner"),
         ("z;0,0;1,x;1,1", "'x' is not a finite number"),
         ("z;0,0;1,0;1,1|", "'' is not a corner"),
+        ("0,0,0;0,0;1,0;1,1", "zero or not finite"),
+        ("1,2;0,0;1,0;1,1", "not a direction"),
+        ("from 1,2,3/1,0,0;0,0;1,0;1,1", "not an eye"),
+        (
+            "from 1,2,3/1,0,0/0,2,0;0,0;1,0;1,1",
+            "perpendicular and of length 1",
+        ),
+        ("plot.geojson", "across 'plot.geojson'"),
     ] {
         let error = Prism::read(text).expect_err(text).to_string();
         assert!(error.contains(says), "{text}: {error}");
+    }
+}
+
+#[test]
+fn directions_are_axes_that_were_turned() {
+    for (name, direction) in [("z", "0,0,2"), ("y", "0,1,0"), ("x", "3,0,0")] {
+        let named = read(&format!("{name}=-1..4;0,0;2,0;2,1;0,1"));
+        let given = read(&format!("{direction}=-1..4;0,0;2,0;2,1;0,1"));
+        assert_eq!(named.clip(), given.clip(), "{name}");
+    }
+    let turned = read("0,0.6,0.8=0..1;-1,-1;1,-1;1,1;-1,1");
+    let clip = turned.clip();
+    // z was turned about x, so that y was, too.
+    let (along, v) = (DVec3::new(0.0, 0.6, 0.8), DVec3::new(0.0, 0.8, -0.6));
+    for (u, v_at, height, inside) in [
+        (0.9, 0.9, 0.9, true),
+        (0.9, -0.9, 0.1, true),
+        (1.1, 0.0, 0.5, false),
+        (0.0, 1.1, 0.5, false),
+        (0.0, 0.0, 1.1, false),
+        (0.0, 0.0, -0.1, false),
+    ] {
+        let point = DVec3::X * u + v * v_at + along * height;
+        assert_eq!(clip.keeps(point), inside, "{point}");
+    }
+    // The way back is the same prism, upside down.
+    assert!(
+        read("0,-0.6,-0.8=-1..0;-1,-1;1,-1;1,1;-1,1")
+            .clip()
+            .keeps(along * 0.5)
+    );
+    assert_eq!(read(&turned.to_string()), turned);
+}
+
+#[test]
+fn prisms_are_placed_as_their_points_are() {
+    let mut random = Random::new(5);
+    let placement = Placement::new(
+        DVec3::new(1.0, -2.0, 0.5),
+        DQuat::from_scaled_axis(DVec3::new(0.3, 1.1, -0.4)),
+        1.7,
+    )
+    .unwrap();
+    for text in [
+        "z=0..1;0,0;2,0;2,1;0,1|0.5,0.5;1,0.5;1,0.8",
+        "y;-1,-1;1,-1;0,1",
+        "0.2,-0.5,0.4=0..3;-1,-1;1,-1;0,1",
+        "from 1,2,3/1,0,0/0,1,0;-1,-1;1,-1;0,1",
+        "from 0,0,-2/0,0,1/0,1,0=1..4;-1,-1;1,-1;0,1",
+    ] {
+        let prism = read(text);
+        let (before, after) = (prism.clip(), prism.placed(&placement).unwrap().clip());
+        for _ in 0..500 {
+            let point = DVec3::from_array([(); 3].map(|()| random.range(-3.0, 3.0)));
+            let moved = placement.to_world(point);
+            assert_eq!(before.keeps(point), after.keeps(moved), "{text}: {point}");
+        }
+        let edges = prism.edges([-1.0, 5.0]);
+        let corners: usize = prism.rings().iter().map(Vec::len).sum();
+        assert_eq!(edges.len(), 3 * corners, "{text}");
+    }
+}
+
+#[test]
+fn a_polygon_of_a_picture_holds_what_is_seen_in_it() {
+    let mut random = Random::new(8);
+    let size = (320, 240);
+    let (eye, target) = (DVec3::new(1.0, -2.0, -5.0), DVec3::new(0.5, 0.0, 0.0));
+    let up = DVec3::new(0.1, -1.0, 0.0);
+    let mirrored = |camera: Camera| Camera {
+        rotation: DMat3::from_diagonal(DVec3::new(-1.0, 1.0, 1.0)) * camera.rotation,
+        ..camera
+    };
+    let seen = Camera::look_at(eye, target, up, 50.0, size).unwrap();
+    let flat = Camera::orthographic(eye, target, up, 4.0, size).unwrap();
+    let ring = [
+        (20.0, 30.0),
+        (300.0, 10.0),
+        (160.0, 100.0),
+        (280.0, 230.0),
+        (10.0, 200.0),
+    ];
+    let rings = [ring.map(DVec2::from).to_vec()];
+    for camera in [seen, flat, mirrored(seen), mirrored(flat)] {
+        let prism = Prism::of_picture(&camera, &rings).unwrap();
+        let clip = prism.clip();
+        assert_eq!(read(&prism.to_string()).clip(), clip);
+        for _ in 0..500 {
+            let point = DVec3::from_array([(); 3].map(|()| random.range(-6.0, 3.0)));
+            let p = camera.rotation * (point - camera.eye);
+            let across = match camera.projection {
+                Projection::Perspective => p.truncate() / p.z,
+                Projection::Orthographic => p.truncate(),
+            };
+            let pixel =
+                across * DVec2::new(camera.fx, camera.fy) + DVec2::new(camera.cx, camera.cy);
+            let is_before = p.z > 0.0 || camera.projection == Projection::Orthographic;
+            let inside = is_before && winds_around(&rings[0], pixel);
+            assert_eq!(clip.keeps(point), inside, "{point}");
+        }
     }
 }

@@ -56,10 +56,59 @@ fn shapes_are_held_in_turn_wherever_they_stand() {
 fn the_outside_of_a_plane_is_flipped_at_once() {
     let mut cut = cut(&[]);
     cut.set("!plane:1,0,0,0".parse().unwrap());
-    assert_eq!(cut.shape(), "plane:-1,0,0,0".parse::<Shape>().unwrap());
+    assert_eq!(cut.shape(), Some(&"plane:-1,0,0,0".parse().unwrap()));
     assert_eq!(cut.words(), "plane at 0.0000");
     cut.flip();
-    assert_eq!(cut.shape(), "plane:1,0,0,0".parse::<Shape>().unwrap());
+    assert_eq!(cut.shape(), Some(&"plane:1,0,0,0".parse().unwrap()));
+}
+
+#[test]
+fn a_prism_is_held_as_shapes_are() {
+    let mut cut = cut(&["polygon:z=0..2;0,0;2,0;2,1"]);
+    assert_eq!((cut.words(), cut.on), ("polygon".into(), true));
+    let shown = |cut: &ClipEditor| cut.expressions()[0].to_string();
+    cut.flip();
+    assert_eq!(shown(&cut), "not(polygon:z=0..2;0,0;2,0;2,1)");
+    assert_eq!(cut.middle(), DVec3::new(1.0, 0.5, 1.0));
+    cut.place(&Placement::new(DVec3::ONE, glam::DQuat::IDENTITY, 2.0).unwrap());
+    assert_eq!(shown(&cut), "not(polygon:z=1..5;1,1;5,1;5,3)");
+    assert_eq!(cut.middle(), DVec3::new(3.0, 2.0, 3.0));
+    cut.flip();
+    assert_eq!(shown(&cut), "polygon:z=1..5;1,1;5,1;5,3");
+    cut.next();
+    assert_eq!(cut.held(), 0);
+}
+
+#[test]
+fn a_clip_that_keeps_everything_holds_no_shape_until_one_is_set() {
+    let mut cut = ClipEditor::new(vec![Expression::All(Vec::new())], ClipOp::And, CENTRE);
+    assert_eq!((cut.shape(), cut.words()), (None, "whole".into()));
+    cut.next();
+    cut.flip();
+    assert_eq!(cut.middle(), CENTRE);
+    cut.set("sphere:0,0,0,1".parse().unwrap());
+    assert_eq!(cut.words(), "sphere");
+}
+
+#[test]
+fn an_outline_keeps_of_what_is_kept_what_it_holds() {
+    let camera = Camera::look_at(-DVec3::Z, DVec3::ZERO, -DVec3::Y, 90.0, (100, 100)).unwrap();
+    let ring = [(50.0, 0.0), (100.0, 0.0), (100.0, 100.0), (50.0, 100.0)].map(DVec2::from);
+    let rings = [ring.to_vec()];
+    let right = DVec3::new(0.4, 0.0, 0.5);
+    let (mut cut, mut rest) = (cut(&[]), cut(&["sphere:0,0,0,1", "plane:0,1,0,0"]));
+    cut.lasso(&camera, (&rings, true)).unwrap();
+    assert!(cut.clip().keeps(right) && !cut.clip().keeps(-right) && cut.held() == 0);
+    rest.op = ClipOp::Or;
+    rest.lasso(&camera, (&rings, false)).unwrap();
+    assert_eq!(
+        (rest.op(), rest.expressions().len(), rest.held()),
+        (ClipOp::And, 2, 2)
+    );
+    let left = right * DVec3::new(-1.0, 1.0, 1.0);
+    assert!(rest.clip().keeps(left) && !rest.clip().keeps(right));
+    let crossed = [[ring[0], ring[2], ring[1], ring[3]].to_vec()];
+    assert!(cut.lasso(&camera, (&crossed, true)).is_err());
 }
 
 #[test]

@@ -1,0 +1,34 @@
+//! The native module of the Python package `rara`: it converts arguments and results, and calls the library.
+
+use pyo3::prelude::*;
+
+mod arrays;
+mod camera;
+mod clip;
+mod errors;
+mod gaussians;
+mod picture;
+mod renderer;
+mod scene;
+
+/// The native part of the package `rara`.
+#[pymodule(gil_used = true)]
+mod _rara {
+    #[pymodule_export]
+    use super::camera::{Camera, orbit, path, section};
+    #[pymodule_export]
+    use super::clip::{check_clip, clip_between, clip_keeps, load_clip, save_clip};
+    #[pymodule_export]
+    use super::gaussians::Gaussians;
+    #[pymodule_export]
+    use super::picture::{Picture, compare};
+    #[pymodule_export]
+    use super::renderer::{Renderer, devices, truth};
+    #[pymodule_export]
+    use super::scene::{Numbers, bounds, load};
+
+    #[pymodule_init]
+    fn begin() {
+        crate::errors::tell_warnings();
+    }
+}

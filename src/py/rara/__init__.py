@@ -1,0 +1,19 @@
+"""rara draws 3D Gaussian Splatting scenes by Vulkan, and cuts them exactly."""
+
+from ._rara import Camera, Gaussians, Picture, compare, devices, orbit, path
+from .clips import Box, Capsule, Clip, Cone, Cylinder, Ellipsoid, Plane, Polygon, Slab, Sphere
+from .drawing import Renderer, Shot, section, sweep, truth
+from .errors import (
+    BudgetError, DeviceError, DeviceLostError, Error, FormatError, InvalidError, IoError, OutOfMemoryError, ValidationError,
+    VulkanError,
+)
+from .scenes import Layer, Scene, from_3dgs, load
+
+generate = Gaussians.generate
+
+__all__ = [
+    "BudgetError", "Box", "Camera", "Capsule", "Clip", "Cone", "Cylinder", "DeviceError", "DeviceLostError", "Ellipsoid",
+    "Error", "FormatError", "Gaussians", "InvalidError", "IoError", "Layer", "OutOfMemoryError", "Picture", "Plane",
+    "Polygon", "Renderer", "Scene", "Shot", "Slab", "Sphere", "ValidationError", "VulkanError", "compare", "devices",
+    "from_3dgs", "generate", "load", "orbit", "path", "section", "sweep", "truth",
+]

@@ -59,7 +59,7 @@ pub(crate) fn numbers<'py, T: Element>(
     }
     let kwargs = [("dtype", expected)].into_py_dict(py)?;
     let whole = numpy.call_method("ascontiguousarray", (array,), Some(&kwargs))?;
-    Ok(whole.extract()?)
+    whole.extract()
 }
 
 /// The same of a fixed number of numbers, row by row.

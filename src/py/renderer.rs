@@ -59,77 +59,55 @@ impl State {
     }
 }
 
-/// A picture that is asked for: `rara.drawing` makes it of the arguments of a method.
-pub(crate) struct Request<'py> {
-    scene: SceneOf,
-    camera: Option<Bound<'py, Camera>>,
-    clip: Option<ClipOf>,
-    section: Option<ClipOf>,
-    size: Option<(u32, u32)>,
-    settings: Bound<'py, PyDict>,
-}
-
-impl<'py> FromPyObject<'_, 'py> for Request<'py> {
-    type Error = PyErr;
-
-    fn extract(given: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
-        let field = |name: &str| given.getattr(name);
-        Ok(Self {
-            scene: field("scene")?.extract()?,
-            camera: field("camera")?.extract()?,
-            clip: field("clip")?.extract()?,
-            section: field("section")?.extract()?,
-            size: field("size")?.extract()?,
-            settings: field("settings")?.cast_into()?,
-        })
-    }
-}
+/// A picture that is asked for: its scene, camera, clip, section (a clip that also cuts layers with clips of their own), size and
+/// settings.
+pub(crate) type Request<'py> = (
+    SceneOf,
+    Option<Bound<'py, Camera>>,
+    Option<ClipOf>,
+    Option<ClipOf>,
+    Option<(u32, u32)>,
+    Bound<'py, PyDict>,
+);
 
 /// The same, once the scene is known.
 pub(crate) struct Frame<'a> {
-    pub(crate) scene: Scene<'a>,
-    pub(crate) camera: rara::Camera,
-    pub(crate) clip: Clip,
-    pub(crate) settings: Settings,
+    of: &'a SceneOf,
+    scene: Scene<'a>,
+    camera: rara::Camera,
+    clip: Clip,
+    settings: Settings,
 }
 
-impl Request<'_> {
-    /// Acts on the frame while other threads of Python run.
-    fn act<R: Send>(
-        &self,
-        py: Python<'_>,
-        act: impl FnOnce(&SceneOf, Frame<'_>) -> Result<R> + Send,
-    ) -> PyResult<R> {
-        let settings = settings_of(&self.settings)?;
-        let given = self.camera.as_ref().map(|camera| camera.get().camera);
-        let (of, clip, section, size) = (&self.scene, &self.clip, &self.section, self.size);
-        let acted = py.detach(|| {
-            let bare = of.scene(&[])?;
-            let camera = camera_of(given.as_ref(), size, of)?;
-            let pixels = u64::from(camera.width) * u64::from(camera.height);
-            check_room(pixels, 64, "pixels")?; // so much takes one while it is drawn and read back
-            let section = section.iter().map(|section| section.expression(&bare));
-            let section = section.collect::<Result<Vec<_>>>()?;
-            let clip = clip.iter().map(|clip| clip.expression(&bare));
-            let all = clip
-                .chain(section.iter().cloned().map(Ok))
-                .collect::<Result<Vec<_>>>()?;
-            let clip = match all.is_empty() {
+/// Acts on the frame of a request while other threads of Python run.
+fn act<R: Send>(
+    py: Python<'_>,
+    (of, camera, clip, section, size, settings): &Request<'_>,
+    act: impl FnOnce(Frame<'_>) -> Result<R> + Send,
+) -> PyResult<R> {
+    let settings = settings_of(settings)?;
+    let given = camera.as_ref().map(|camera| camera.get().camera);
+    let acted = py.detach(|| {
+        let scene = of.scene(&[])?;
+        let camera = camera_of(given.as_ref(), *size, of)?;
+        let pixels = u64::from(camera.width) * u64::from(camera.height);
+        check_room(pixels, 64, "pixels")?; // so much takes one while it is drawn and read back
+        let in_scene = |clip: &ClipOf| clip.expression(&scene);
+        let section: Vec<_> = section.iter().map(in_scene).collect::<Result<_>>()?;
+        let mut all: Vec<_> = clip.iter().map(in_scene).collect::<Result<_>>()?;
+        all.extend_from_slice(&section);
+        act(Frame {
+            of,
+            scene: of.scene(&section)?,
+            camera,
+            clip: match all.is_empty() {
                 true => Clip::default(),
                 false => Expression::All(all).clip(),
-            };
-            act(
-                of,
-                Frame {
-                    scene: of.scene(&section)?,
-                    camera,
-                    clip,
-                    settings,
-                },
-            )
-        });
-        acted.map_err(raised)
-    }
+            },
+            settings,
+        })
+    });
+    acted.map_err(raised)
 }
 
 /// The settings of keyword arguments, by the names of the command line with `_` for `-`.
@@ -162,15 +140,13 @@ impl Renderer {
         &self,
         py: Python<'_>,
         request: &Request<'_>,
-        act: impl FnOnce(&mut Headless, (&rara::Camera, &Clip, &Settings)) -> Result<R> + Send,
+        work: impl FnOnce(&mut Headless, (&rara::Camera, &Clip, &Settings)) -> Result<R> + Send,
     ) -> PyResult<R> {
-        request.act(py, |of, frame| {
+        act(py, request, |frame| {
             let mut state = self.state();
-            state.show(of, frame.scene, frame.settings.precision.sh)?;
-            act(
-                &mut state.headless,
-                (&frame.camera, &frame.clip, &frame.settings),
-            )
+            state.show(frame.of, frame.scene, frame.settings.precision.sh)?;
+            let seen = (&frame.camera, &frame.clip, &frame.settings);
+            work(&mut state.headless, seen)
         })
     }
 }
@@ -263,44 +239,33 @@ impl Renderer {
     }
 
     fn _slice(&self, py: Python<'_>, request: Request<'_>, plane: ClipOf) -> PyResult<Picture> {
-        request.act(
-            py,
-            |_,
-             Frame {
-                 scene,
-                 camera,
-                 clip,
-                 settings,
-             }| {
-                let shapes = plane.expression(&scene)?.shapes();
-                let plane = shapes.first().and_then(Shape::as_plane);
-                let plane =
-                    plane.ok_or_else(|| Error::Invalid("section: it has no plane".into()))?;
-                let mut state = self.state();
-                state.shown = None;
-                let slice = Slice::new(&scene, &plane);
-                slice.load(&mut state.headless, &settings)?;
-                let picture =
-                    slice.picture(&mut state.headless, (&camera, &clip, &settings), None)?;
-                Ok(Picture::new(picture, None))
-            },
-        )
+        act(py, &request, |frame| {
+            let shapes = plane.expression(&frame.scene)?.shapes();
+            let plane = shapes.first().and_then(Shape::as_plane);
+            let plane = plane.ok_or_else(|| Error::Invalid("section: it has no plane".into()))?;
+            let mut state = self.state();
+            state.shown = None;
+            let slice = Slice::new(&frame.scene, &plane);
+            slice.load(&mut state.headless, &frame.settings)?;
+            let seen = (&frame.camera, &frame.clip, &frame.settings);
+            Ok(Picture::new(
+                slice.picture(&mut state.headless, seen, None)?,
+                None,
+            ))
+        })
     }
 
     fn _panorama(&self, py: Python<'_>, request: Request<'_>, width: u32) -> PyResult<Picture> {
         let panorama = Panorama::new((width, width / 2)).map_err(raised)?;
         check_room(panorama.face_pixels(), 64, "pixels").map_err(raised)?;
         self.work(py, &request, |headless, (camera, clip, settings)| {
-            let mut pictures = panorama.faces(camera).map(Err);
-            for face in &mut pictures {
-                if let Err(camera) = face {
-                    headless.render(camera, clip, settings)?;
-                    *face = Ok(headless.picture()?);
-                }
-            }
-            let pictures =
-                pictures.map(|face| face.unwrap_or_else(|_| rara::Picture::filled(0, 0, [0.0; 4])));
-            Ok(Picture::new(panorama.assembled(&pictures), None))
+            let faces = panorama.faces(camera).map(|face| {
+                headless.render(&face, clip, settings)?;
+                headless.picture()
+            });
+            let [front, right, back, left, up, down] = faces;
+            let faces = [front?, right?, back?, left?, up?, down?];
+            Ok(Picture::new(panorama.assembled(&faces), None))
         })
     }
 
@@ -318,20 +283,12 @@ impl Renderer {
 /// The picture of the reference in double precision.
 #[pyfunction]
 pub(crate) fn truth(py: Python<'_>, request: Request<'_>) -> PyResult<Picture> {
-    request.act(
-        py,
-        |_,
-         Frame {
-             scene,
-             camera,
-             clip,
-             settings,
-         }| {
-            scene.check()?;
-            let frame = rara_reference::render::<f64>(&scene, &camera, &clip, &settings);
-            Ok(Picture::new(frame.picture, None))
-        },
-    )
+    act(py, &request, |frame| {
+        frame.scene.check()?;
+        let seen = (&frame.camera, &frame.clip, &frame.settings);
+        let truth = rara_reference::render::<f64>(&frame.scene, seen.0, seen.1, seen.2);
+        Ok(Picture::new(truth.picture, None))
+    })
 }
 
 /// Lists the Vulkan devices: name, driver, and the reason for which rara cannot use one, or None.

@@ -7,10 +7,8 @@ use std::sync::Arc;
 use glam::{DQuat, DVec3};
 use pyo3::prelude::*;
 use rara::clip::Expression;
-use rara::scene::layers::{
-    FileNumbers, LayerClip, LoadedLayer, Region, SelectionRequest, entries, load_by,
-};
-use rara::scene::{Annotations, Bounds, Property, load_layer, load_with, trained_folder};
+use rara::scene::layers::{FileNumbers, LayerClip, Region, SelectionRequest, entries, load_by};
+use rara::scene::{Bounds, Property, load_layer, load_with, trained_folder};
 use rara::{Error, LayerState, Placement, Result, Scene};
 
 use crate::errors::{invalid, of_argument, raised};
@@ -158,19 +156,12 @@ pub(crate) fn bounds(py: Python<'_>, scene: SceneOf) -> PyResult<[[f64; 3]; 2]> 
     Ok([bounds.min.into(), bounds.max.into()])
 }
 
-/// A layer that was read: its fields as `rara.Layer` takes them.
-#[derive(IntoPyObject)]
-pub(crate) struct ReadLayer {
-    name: String,
-    gaussians: Gaussians,
-    position: [f64; 3],
-    rotation: [f64; 4],
-    scale: f64,
-    opacity: f32,
-    visible: bool,
-    clip: Option<String>,
-    numbers: Option<Numbers>,
-}
+/// A layer that was read: the fields of `rara.Layer` in their order.
+type ReadLayer = (
+    (String, Gaussians),
+    ([f64; 3], [f64; 4], f64),
+    (f32, bool, Option<String>, Option<Numbers>),
+);
 
 /// Reads the layers of files, the direction that is up in them, and a report.
 #[pyfunction]
@@ -220,32 +211,9 @@ pub(crate) fn load(
     let one = loaded.layers.len() == 1;
     let annotations = Some(loaded.annotations).filter(|_| one);
     let layers = loaded.layers.into_iter().map(|layer| {
-        let made = ReadLayer::of(layer, &loaded.extra.properties, before, annotations.clone());
-        before += made.gaussians.0.gaussians.len();
-        made
-    });
-    Ok((
-        layers.collect(),
-        up.map(Into::into),
-        Report {
-            dropped,
-            repaired,
-            notes,
-        },
-    ))
-}
-
-impl ReadLayer {
-    /// A layer with its properties, of those of all Gaussians; `before` are those of the layers before it.
-    fn of(
-        layer: LoadedLayer,
-        properties: &[Property],
-        before: usize,
-        annotations: Option<Annotations>,
-    ) -> Self {
-        let count = layer.gaussians.len();
+        let end = before + layer.gaussians.len();
         let values = |one: &Property| match &layer.numbers {
-            None => one.values[before..before + count].to_vec(),
+            None => one.values[before..end].to_vec(),
             Some((first, numbers)) => {
                 let all = numbers
                     .iter()
@@ -253,27 +221,34 @@ impl ReadLayer {
                 all.collect()
             }
         };
-        let properties = properties
-            .iter()
-            .map(|one| Property::new(&one.name, values(one)));
-        let properties = properties.collect();
-        let placement = layer.state.placement;
+        let properties = loaded.extra.properties.iter();
+        let properties = properties.map(|one| Property::new(&one.name, values(one)));
+        let set = Set {
+            properties: properties.collect(),
+            gaussians: layer.gaussians,
+            annotations: annotations.clone(),
+            report: Report::default(),
+        };
+        before = end;
+        let LayerState {
+            placement,
+            opacity,
+            visible,
+            ..
+        } = layer.state;
         let DQuat { x, y, z, w } = placement.rotation();
-        Self {
-            name: layer.name,
-            position: placement.position().into(),
-            rotation: [w, x, y, z],
-            scale: placement.scale(),
-            opacity: layer.state.opacity,
-            visible: layer.state.visible,
-            clip: layer.clip.map(|clip| clip.to_string()),
-            numbers: layer.numbers.map(|numbers| Numbers(Arc::new(numbers))),
-            gaussians: Gaussians(Arc::new(Set {
-                gaussians: layer.gaussians,
-                properties,
-                annotations,
-                report: Report::default(),
-            })),
-        }
-    }
+        let clip = layer.clip.map(|clip| clip.to_string());
+        let numbers = layer.numbers.map(|numbers| Numbers(Arc::new(numbers)));
+        (
+            (layer.name, Gaussians(Arc::new(set))),
+            (placement.position().into(), [w, x, y, z], placement.scale()),
+            (opacity, visible, clip, numbers),
+        )
+    });
+    let report = Report {
+        dropped,
+        repaired,
+        notes,
+    };
+    Ok((layers.collect(), up.map(Into::into), report))
 }

@@ -7,6 +7,7 @@ from .errors import (
     BudgetError, DeviceError, DeviceLostError, Error, FormatError, InvalidError, IoError, OutOfMemoryError, ValidationError,
     VulkanError,
 )
+from .gsplat import rasterize
 from .scenes import Layer, Scene, from_3dgs, load
 
 generate = Gaussians.generate
@@ -15,5 +16,5 @@ __all__ = [
     "BudgetError", "Box", "Camera", "Capsule", "Clip", "Cone", "Cylinder", "DeviceError", "DeviceLostError", "Ellipsoid",
     "Error", "FormatError", "Gaussians", "InvalidError", "IoError", "Layer", "OutOfMemoryError", "Picture", "Plane",
     "Polygon", "Renderer", "Scene", "Shot", "Slab", "Sphere", "ValidationError", "VulkanError", "compare", "devices",
-    "from_3dgs", "generate", "load", "orbit", "path", "section", "sweep", "truth",
+    "from_3dgs", "generate", "load", "orbit", "path", "rasterize", "section", "sweep", "truth",
 ]

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from . import _rara
 from ._rara import Camera, Picture
 from .clips import Clip, ClipLike
+from .errors import InvalidError
 from .scenes import SceneLike, _bar
 
 
@@ -25,16 +26,6 @@ class Shot:
     camera: Optional[Camera] = None
     clip: Optional[ClipLike] = None
     section: Optional[ClipLike] = None
-
-
-@dataclasses.dataclass(frozen=True)
-class _Request:
-    scene: SceneLike
-    camera: Optional[Camera]
-    clip: Optional[ClipLike]
-    section: Optional[ClipLike]
-    size: Optional[tuple[int, int]]
-    settings: dict[str, Any]
 
 
 class Renderer(_rara.Renderer):
@@ -63,7 +54,7 @@ class Renderer(_rara.Renderer):
         **settings: Any,
     ) -> Picture:
         """Draws a picture of a scene."""
-        return self._render(_Request(scene, camera, clip, section, size, settings))
+        return self._render((scene, camera, clip, section, size, settings))
 
     def pictures(
         self,
@@ -86,7 +77,7 @@ class Renderer(_rara.Renderer):
                     if not isinstance(shot, Shot):
                         shot = Shot(camera=shot) if isinstance(shot, Camera) else Shot(clip=shot)
                     seen, kept = shot.camera or camera, shot.clip or clip
-                    request = _Request(scene, seen, kept, shot.section, size, settings)
+                    request = scene, seen, kept, shot.section, size, settings
                     waiting.append(thread.submit(self._render, request))
                     while len(waiting) > max(ahead, 0):
                         yield waiting.popleft().result()
@@ -115,7 +106,7 @@ class Renderer(_rara.Renderer):
         mean "normal" [height, width, 3] of thinnest axes, in the world; the number of the "layer" that adds most, -1 for none;
         the mean "weight" that the clip leaves; and the "count" of splats."""
         names = list(dict.fromkeys(names))
-        drawn = iter(self._channels(_Request(scene, camera, clip, section, size, settings), names))
+        drawn = iter(self._channels((scene, camera, clip, section, size, settings), names))
         return {name: np.stack([next(drawn) for _ in "xyz"], -1) if name == "normal" else next(drawn) for name in names}
 
     def pick(
@@ -130,13 +121,14 @@ class Renderer(_rara.Renderer):
     ) -> dict[str, NDArray[Any]]:
         """Finds the Gaussian that adds most to each pixel of a rectangle (left, top, width, height): its "layer" and its
         "number" in the scene, int64 [height, width], -1 where there is none, and the "alpha" that it adds, float32."""
-        found = self._pick(_Request(scene, camera, clip, None, size, settings), rect)
+        found = self._pick((scene, camera, clip, None, size, settings), rect)
         return dict(zip(("layer", "number", "alpha"), found))
 
     def slice(self, scene: SceneLike, shot: Shot, clip: Optional[ClipLike] = None, **settings: Any) -> Picture:
         """Draws what lies on the plane of a section of `rara.section`: the mean colour of the splats there."""
-        assert shot.section is not None, "give a shot of rara.section"
-        return self._slice(_Request(scene, shot.camera, clip, None, None, settings), shot.section)
+        if shot.section is None:
+            raise InvalidError("shot has no section; give one of rara.section")
+        return self._slice((scene, shot.camera, clip, None, None, settings), shot.section)
 
     def panorama(
         self,
@@ -149,7 +141,7 @@ class Renderer(_rara.Renderer):
         **settings: Any,
     ) -> Picture:
         """Draws all that is around a camera: longitudes across, with the direction of view in the middle, latitudes down."""
-        return self._panorama(_Request(scene, camera, clip, section, None, settings), width)
+        return self._panorama((scene, camera, clip, section, None, settings), width)
 
 
 def truth(
@@ -162,7 +154,7 @@ def truth(
     **settings: Any,
 ) -> Picture:
     """Draws a picture by the reference, on the processor in double precision: slow, and what errors are measured against."""
-    return _rara.truth(_Request(scene, camera, clip, section, size, settings))
+    return _rara.truth((scene, camera, clip, section, size, settings))
 
 
 def section(

@@ -106,7 +106,7 @@ def load(
 
     called = progress if callable(progress) else tell if bar is not None else None
     layers, up, report = _rara.load(paths, list(select), called)
-    return Scene([Layer(**layer) for layer in layers], up, report)
+    return Scene([Layer(*named, *placed, *shown) for named, placed, shown in layers], up, report)
 
 
 def _bar(**options: Any) -> Any:

@@ -39,6 +39,7 @@ chapters! {
     modes,
     paper shows "report",
     profiling,
+    python,
     speed,
     testing,
     wgpu,

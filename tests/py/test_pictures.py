@@ -1,6 +1,9 @@
 """Pictures are those of the program."""
 
 import logging
+import signal
+import subprocess
+import sys
 import threading
 
 import numpy as np
@@ -232,3 +235,19 @@ def test_the_truth_is_near(renderer, gaussians):
     picture = renderer.render(gaussians, clip=CLIP, size=SIZE)
     truth = rara.truth(gaussians, clip=CLIP, size=SIZE)
     assert 0 < rara.compare(picture, truth)["max"] < 1
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGINT") or sys.platform == "win32", reason="signals are sent as on Unix")
+def test_ctrl_c_ends_a_loop_of_pictures():
+    code = """
+import itertools, rara
+scene = rara.generate("general", 500)
+shots = (f"plane:1,0,0,{n % 7 / 7}" for n in itertools.count())
+for picture in rara.Renderer().pictures(scene, shots, size=(32, 24), mode="hard"):
+    print("drawn", flush=True)
+"""
+    with subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        assert process.stdout.readline() == "drawn\n"
+        process.send_signal(signal.SIGINT)
+        _, errors = process.communicate(timeout=60)
+    assert errors.rstrip().endswith("KeyboardInterrupt") and process.returncode != 0

@@ -280,6 +280,9 @@ pub(crate) fn orbit(
     ease: &str,
 ) -> PyResult<Vec<Camera>> {
     let framing = framing(&scene, size, (fov_y, up, ortho));
+    if !turns.is_finite() {
+        return Err(invalid(format!("turns is {turns}; give a finite number")));
+    }
     let orbit = Orbit::new(turns, frames).ease(choice("ease", ease)?);
     several(
         frames,

@@ -112,7 +112,7 @@ def test_pictures_are_arrays(renderer, gaussians):
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        ({"mode": "exat"}, "mode 'exat'"),
+        ({"mode": "none at all"}, "mode 'none at all'"),
         ({"moode": "exact"}, "there is no setting 'moode'"),
         ({"clip": "sphear:1"}, "clip: column 1"),
         ({"clip": 3}, "clip is a .*int.*give a rara.Clip"),
@@ -127,7 +127,11 @@ def test_wrong_arguments_are_named(renderer, gaussians, arguments, said):
         renderer.render(gaussians, **arguments)
 
 
-def test_wrong_scenes_and_devices_are_named(renderer):
+def test_wrong_scenes_and_devices_are_named(renderer, gaussians):
+    with pytest.raises(rara.InvalidError, match="turns is NaN"):
+        rara.orbit(gaussians, 3, turns=float("nan"))
+    with pytest.raises(rara.InvalidError, match="thickness is -1"):
+        rara.section(gaussians, "axial", 0.5, thickness=-1)
     with pytest.raises(rara.InvalidError, match="scene is a .*int"):
         renderer.render(3)
     with pytest.raises(rara.InvalidError, match="K is"):

@@ -172,6 +172,9 @@ def section(
     `at` is a share, 0 to 1, of the scene's bounds. `thickness` is that of a slab, and `scale` the world units to a pixel;
     without them all that is behind the plane is kept and shown. All sections across an axis have one scale.
     """
+    for name, length in (("scale", scale), ("thickness", thickness)):
+        if length is not None and not 0 < length < np.inf:
+            raise InvalidError(f"{name} is {length}; give a finite number above zero")
     camera, plane = _rara.section(scene, axis, at, size=size, up=up, scale=scale, thickness=thickness)
     return Shot(camera, section=plane)
 

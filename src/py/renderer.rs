@@ -48,8 +48,15 @@ impl State {
         });
         if is_there {
             for (index, layer) in scene.layers().iter().enumerate() {
-                self.headless.set_layer_state(index, layer.state())?;
-                self.headless.set_layer_clip(index, layer.clip().cloned())?;
+                // What is set again counts as a change, for which the next frame computes more.
+                let there = &self.headless.layers()[index];
+                let changes = (there.state() != layer.state(), there.clip() != layer.clip());
+                if changes.0 {
+                    self.headless.set_layer_state(index, layer.state())?;
+                }
+                if changes.1 {
+                    self.headless.set_layer_clip(index, layer.clip().cloned())?;
+                }
             }
         } else {
             self.headless.load_as(scene, format)?;

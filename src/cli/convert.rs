@@ -34,8 +34,8 @@ The extension of OUT chooses the format: {}. Several scenes are joined into one 
 converted by itself, into a file with the scene's name in place of {{}}. If a list of layers places or fades layers, their
 Gaussians are written as placed and faded. Hidden layers are left out.
 
---clip and the other clip flags keep or drop whole Gaussians by their centres; `rara bake` cuts Gaussians. --place acts before
-the clip. After it, the scene is scaled by --scale, then turned by --rotate, then moved by --move.", Format::endings()))]
+--clip and the other clip flags keep or drop whole Gaussians by their centres; `rara bake` cuts Gaussians. The order is --place,
+the clip, --scale, --rotate, --move.", Format::endings()))]
 pub(super) struct Convert {
     /// File to write; its extension chooses the format; {} becomes the name of each SCENE
     #[arg(short, long, value_name = "OUT")]

@@ -17,8 +17,9 @@ pub(super) struct FrameArgs {
     pub(super) clip: ClipArgs,
     /// Keep what a polygon in the first picture holds, X,Y;X,Y;..., px (repeatable)
     ///
-    /// A leading ! keeps the rest of the scene. What is kept lies on the lines of sight through the polygon, whatever its depth. Pixels are counted from the picture's top
-    /// left corner. A | begins the corners of a hole. Other pictures show the same part of the scene. --save-clip saves it.
+    /// The clip keeps everything that is seen through the polygon, at every depth; with a leading ! it keeps the rest. Pixels are
+    /// counted from the picture's top left corner, and a | begins the corners of a hole. If the command draws several pictures, the
+    /// polygon is one of the first picture, and the others show the same part of the scene. --save-clip saves it.
     #[arg(long, value_name = "CORNERS", value_parser = Lasso::parse, allow_hyphen_values = true, help_heading = "Clip")]
     lasso: Vec<Lasso>,
     #[command(flatten)]

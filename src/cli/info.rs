@@ -20,9 +20,9 @@ Example:
   rara info scene.ply
 
 The command first prints what the loader repaired or dropped. Statistics are the smallest value, the 1st, 50th and 99th
-percentiles, and the largest value. Robust bounds leave out the outermost percent of the centres at each
-end of each axis; shares in --clip and --section are shares of these bounds. Elongation is the ratio of the longest to the middle axis of
-a Gaussian, and flatness that of the middle to the shortest.")]
+percentiles, and the largest value. Robust bounds ignore, along each axis, the lowest and the highest percent of
+the centres, and are wider by the largest deviation of the median Gaussian; shares in --clip and --section are shares of these bounds.
+Elongation is the longest axis of a Gaussian divided by the middle one, and flatness the middle one divided by the shortest.")]
 pub(super) struct Info {
     /// Print the same facts as JSON to standard output
     #[arg(long)]

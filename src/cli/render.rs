@@ -56,8 +56,8 @@ Examples:
 
 Pictures: .png is 8-bit RGBA, un-premultiplied; .exr is 32-bit float RGBA, premultiplied.
 
-Counts: visible splats are kept whole, cutoff splats are cut by the clip, invisible splats are clipped away, and culled \
-splats are out of view, too faint or hidden.")]
+The printed counts are numbers of splats: the clip keeps visible ones whole, cuts cutoff ones, and removes invisible ones; \
+culled ones are out of view, too faint or hidden.")]
 pub(super) struct Render {
     /// A picture (.png, .exr, .npy) or film (.apng, .mp4, .mov, .mkv, .webm); - is stdout
     ///
@@ -72,13 +72,13 @@ pub(super) struct Render {
     ///
     /// Beside a.png the files are a.depth.png, a.normal.png and so on. A 16-bit .png stores depths in thousandths of a world
     /// unit, normals from -1 to 1, weights from 0 to 1, counts as whole numbers, and layers as numbers from 1. The channels
-    /// are drawn in frames of their own, whose times are not reported.
+    /// are drawn separately, and the reported times leave them out.
     #[arg(long, value_name = "LIST", value_parser = values::named::<Aov>(), value_delimiter = ',')]
     aov: Vec<Aov>,
     /// Render each picture N times, without reusing results, and report medians
     ///
-    /// By default, rara renders pictures repeatedly until there are at least five frames in all, or until about 2 s have
-    /// passed. With --quiet, it renders each picture once.
+    /// By default, rara renders each picture several times, until there are five frames of all pictures together or 2 s have
+    /// passed, and reports medians. With --quiet, it renders each picture once.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     repeat: Option<u32>,
     #[command(flatten)]

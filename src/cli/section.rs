@@ -19,9 +19,10 @@ pub(super) struct SectionArgs {
     /// Cut across an axis and face the cut: axial=40%, z=10%..90%:9, z@12.5 (repeatable)
     ///
     /// AXIS=SHARE cuts at a share, from 0 to 1 or from 0% to 100%, of the extent of the robust bounds that rara info prints.
-    /// AXIS@POSITION cuts at a position along the axis, world units. With FROM..TO:COUNT in place of one of these there are COUNT
-    /// sections in equal steps. Axes are z or axial, y or coronal, x or sagittal. NAME is a plane of a --clip-file; the other
-    /// clips of this file are then not used. A leading ! looks from the other side. The picture has no perspective.
+    /// AXIS@POSITION cuts at a position along the axis, world units. FROM..TO:COUNT in place of a share or a position makes COUNT
+    /// sections in equal steps. Axes are z or axial, y or coronal, x or sagittal. Any other NAME cuts at the plane of this name in
+    /// the file of --clip-file, whose other clips are then not used. A ! before the axis or the name, as in !axial=40%, looks from
+    /// the other side. The picture has no perspective.
     #[arg(long, value_name = "AXIS=SHARE|NAME", value_parser = wanted, allow_hyphen_values = true)]
     section: Vec<SectionRequest>,
     /// Thickness of the kept slab, world units [default: no limit]

@@ -26,8 +26,8 @@ pub(super) struct SliceArgs {
     slice: bool,
     /// Make the cut surface of a slice opaque
     ///
-    /// Without this flag, a pixel has the alpha of the splats on the plane. With it, what has at least the alpha of --cut-level is
-    /// opaque, and what has less fades towards the edge.
+    /// Without this flag, a pixel has the alpha of the splats on the plane. With it, pixels of at least the alpha --cut-level are
+    /// opaque, and fainter ones fade away.
     #[arg(long)]
     opaque: bool,
     /// Draw a line around the cut surface, or with NAME= around that of a layer (repeatable)

@@ -203,7 +203,7 @@ fn a_lasso_holds_what_the_first_picture_shows_in_it() {
     let draw = |name: &str, flags: &str| {
         let words = format!("render @/scene.ply -o @/{name} --size 64x48 {flags}");
         done(line(&here, &words));
-        Picture::load(&here.join(name)).expect("a picture")
+        Picture::load(here.join(name)).expect("a picture")
     };
     let whole = draw("whole.exr", "");
     let kept = draw(

@@ -77,10 +77,10 @@ The clip:
   drag DX,DY                       moves the held shape, pixels
   tilt DX,DY                       turns the held shape, degrees
   scale FACTOR                     makes the held shape larger or smaller
-  edit frame, N|NAME, next         edits the clip of all layers, or the clip that a layer has of its own
-  edit release                     gives the layer that is edited the clip of all layers again
+  edit frame, N|NAME, next         edits the clip of all layers, or a layer's own
+  edit release                     removes the edited layer's own clip
   clip next                        takes the next clip of a dropped file
-  lasso X,Y;X,Y;...                keeps what this polygon holds, pixels; !X,Y;... what it does not
+  lasso X,Y;X,Y;...                keeps what is seen in this polygon, pixels; with a leading ! the rest
   undo                             takes back the last change of a clip
 Layers:
   layer N|NAME on, off             shows or hides a layer
@@ -88,12 +88,12 @@ Layers:
   layer N|NAME tint COLOUR|none    mixes a colour into it
 The window:
   mode none, hard, rara, exact
-  outline, slice, edge, rim on|off marks the shapes, and shows cut faces, as the keys B, 7, 8 and 9 do
+  outline, slice, edge, rim on|off marks shapes and cut faces, as the keys B, 7, 8 and 9 do
   keys, numbers on|off             shows the list of keys, or the clip's numbers
   screenshot [FILE]                writes a screenshot
   resize WxH                       gives the window this size, pixels
   minimise, restore                hides the window, or shows it again
-  timings, flags                   prints the times of the stages, or the flags that draw the picture
+  timings, flags                   prints the stages' times, or the flags that draw the picture
   drop FILE                        opens a file as if it were dropped on the window
   repeat N ACTION                  does an action N times
   quit                             closes the window"))]

@@ -213,7 +213,7 @@ fn a_variable_that_is_stored_once_has_that_value() {
         ];
         module_of(
             34,
-            &[pointer.clone()],
+            std::slice::from_ref(&pointer),
             &[&stores, more, &loads[..]].concat(),
         )
     };

@@ -37,7 +37,7 @@ Keys:
   Backspace or Ctrl+Z          take back the last change of a clip
   B                            outlines of the shapes on or off
   F1 to F9                     layer 1 to 9 on or off (Shift: its opacity; Ctrl: its tint)
-  L, U                         edit the next layer's own clip, or that of all layers; remove the own
+  L, U                         L: edit the own clip of the next layer, or that of all; U: remove it
   M                            show or hide the mode and the clip's numbers
   C or F12                     screenshot
   F                            print the flags that draw this picture on the terminal

@@ -38,6 +38,7 @@ mod layer;
 pub mod layers;
 #[cfg(feature = "formats")]
 mod load;
+pub mod mesh;
 mod numbers;
 mod parts;
 pub mod picture;
@@ -85,6 +86,7 @@ pub use generate::Random;
 pub use generate::{Kind, generate};
 pub use layer::check_clip;
 pub use layer::{Layer, LayerState, Scene};
+pub use mesh::{Mesh, MeshReport, MeshRule};
 pub use numbers::Numbers;
 pub use parts::Part;
 pub use predicate::{Attribute, Comparison, Predicate};

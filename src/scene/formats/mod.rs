@@ -22,6 +22,7 @@ use serde_json::Value;
 
 use self::files::Archive;
 pub(super) use self::files::Files;
+pub(super) use self::gltf::triangles;
 use self::output::FormatOutput;
 pub use self::project::{FileLayer, file_layers, load_layer};
 pub(super) use self::write::WRITERS;

@@ -100,14 +100,14 @@ impl Edges {
             _ => format!("; it is the first of {} like it", grouped(count)),
         };
         Err(format!(
-            "the mesh is not closed: the edge {name} has {}, and should have one on either side{rest}; fill the holes, or have its \
-             inside decided by the winding number, which closes them",
+            "the mesh is not closed: the edge {name} has {}, and should have one on either side{rest}; fill the holes, or have \
+             its inside decided by the winding number, which closes them",
             counted(faces, "face")
         ))
     }
 
-    /// Adds faces that close the surface, whatever directions those that are there have: of each part of its rim, to the middle of
-    /// that part's vertices. Then as many faces have an edge in one direction as in the other.
+    /// Adds faces that close the surface, whatever directions those that are there have: of each part of its rim, to the middle
+    /// of that part's vertices. Then as many faces have an edge in one direction as in the other.
     pub(super) fn close(&self, of: &mut Faces, report: &mut MeshReport) {
         let mut rim = Vec::new();
         for edge in self.all() {

@@ -1,11 +1,11 @@
 //! Where lines cross the faces of a mesh, and how often these wind around a point.
 //!
-//! Both look along a line at the mesh: each vertex has two coordinates across the line, x and y, and lies left of the line where its
-//! x is below 0, and right of it otherwise. An edge from left to right passes above the line or below it, and *passes* is said by a
-//! function of the edge's two ends in that order, which all its faces share. A face is crossed as often as its edges pass above the
-//! line from right to left, less as often as they do from left to right: once, never, or -1 times. Each edge of a closed mesh has as
-//! many faces that have it in one direction as in the other, so that the sum over all faces is zero *whatever the function says*:
-//! no line slips through an edge or a vertex, and none crosses there twice, however its numbers are rounded.
+//! Both look along a line at the mesh: each vertex has two coordinates across the line, x and y, and lies left of the line where
+//! its x is below 0, and right of it otherwise. An edge from left to right passes above the line or below it, and *passes* is
+//! said by a function of the edge's two ends in that order, which all its faces share. A face is crossed as often as its edges
+//! pass above the line from right to left, less as often as they do from left to right: once, never, or -1 times. Each edge of a
+//! closed mesh has as many faces that have it in one direction as in the other, so that the sum over all faces is zero *whatever
+//! the function says*: no line slips through an edge or a vertex, and none crosses there twice, however its numbers are rounded.
 
 use glam::DVec3;
 use robust::{Coord, Coord3D, orient2d, orient3d};
@@ -31,9 +31,9 @@ pub(super) fn below([a, b, c]: [DVec3; 3], point: DVec3) -> f64 {
     orient3d(a, b, c, point)
 }
 
-/// How often a face is crossed by the line along z through a point that lies below it: 1 where its front looks up, and -1 where it
-/// looks down. The point counts as a bit lower than it is, much less farther back in y, and again much less in x (simulation of
-/// simplicity), so that it is on no face, edge or vertex.
+/// How often a face is crossed by the line along z through a point that lies below it: 1 where its front looks up, and -1 where
+/// it looks down. The point counts as a bit lower than it is, much less farther back in y, and again much less in x (simulation
+/// of simplicity), so that it is on no face, edge or vertex.
 pub(super) fn crossed_above(corners: [DVec3; 3], point: DVec3) -> i32 {
     let is_left = corners.map(|corner| corner.x < point.x);
     let mut turns = 0;
@@ -67,8 +67,8 @@ pub(super) fn may_be_above(node: &Node, point: DVec3) -> bool {
 }
 
 impl Mesh {
-    /// How often the mesh winds around a point: 1 in the inside of a closed mesh, and 0 outside of it. It is exact; a point on a face
-    /// has the number of one of its sides.
+    /// How often the mesh winds around a point: 1 in the inside of a closed mesh, and 0 outside of it. It is exact; a point on a
+    /// face has the number of one of its sides.
     pub fn winding(&self, point: DVec3) -> i32 {
         let mut winding = 0;
         self.tree().walk(
@@ -86,9 +86,9 @@ impl Mesh {
         self.winding(point) != 0
     }
 
-    /// Adds all crossings of the line {origin + t direction} with the mesh, in no order: each as its t, and by how much the winding
-    /// number changes there, 1 where the line goes in and -1 where it comes out. The changes of a line add up to 0 exactly. A
-    /// direction that is zero or not finite crosses nothing.
+    /// Adds all crossings of the line {origin + t direction} with the mesh, in no order: each as its t, and by how much the
+    /// winding number changes there, 1 where the line goes in and -1 where it comes out. The changes of a line add up to 0
+    /// exactly. A direction that is zero or not finite crosses nothing.
     pub fn crossings(&self, origin: DVec3, direction: DVec3, found: &mut Vec<(f64, f64)>) {
         let Some(line) = Line::new(origin, direction) else {
             return;
@@ -133,8 +133,8 @@ impl Line {
         [x - self.slopes[0] * z, y - self.slopes[1] * z, z]
     }
 
-    /// True where a face in the box may be crossed. Rounding keeps the order of numbers, so that the intervals of x and y have all
-    /// that [`across`](Self::across) makes of points in the box, and nothing need be added to them.
+    /// True where a face in the box may be crossed. Rounding keeps the order of numbers, so that the intervals of x and y have
+    /// all that [`across`](Self::across) makes of points in the box, and nothing need be added to them.
     fn may_cross(&self, node: &Node) -> bool {
         let [low, high] = [node.low, node.high]
             .map(|corner| self.axes.map(|axis| corner[axis] - self.origin[axis]));

@@ -41,8 +41,8 @@ pub(super) fn check(of: &Faces, tree: &MeshTree) -> Result<(), String> {
             _ => format!("; it is the first of {} such pairs", grouped(count)),
         };
         return Err(format!(
-            "the mesh cuts itself: the face with the corners {} meets that with {}{rest}; mend it there, or have its inside decided \
-             by the winding number",
+            "the mesh cuts itself: the face with the corners {} meets that with {}{rest}; mend it there, or have its inside \
+             decided by the winding number",
             places[0], places[1]
         ));
     }

@@ -1,7 +1,7 @@
 //! Closed meshes of triangles: files and lists of them, what is checked and put right, and where their inside is.
 //!
-//! A [`Mesh`] has its faces in the order of a hierarchy of boxes, by which all questions about it are answered. Its front is outside:
-//! the corners of a face turn to the left as seen from there.
+//! A [`Mesh`] has its faces in the order of a hierarchy of boxes, by which all questions about it are answered. Its front is
+//! outside: the corners of a face turn to the left as seen from there.
 
 mod edges;
 mod lines;
@@ -9,6 +9,10 @@ mod meet;
 mod near;
 mod orient;
 mod packed;
+#[cfg(feature = "formats")]
+mod polygon;
+#[cfg(feature = "formats")]
+mod read;
 mod report;
 mod sets;
 pub mod shapes;
@@ -37,13 +41,14 @@ pub const MOST_FACES: usize = 1 << 26;
 /// What the inside of a mesh is, and what is asked of it for that.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum MeshRule {
-    /// The surface is closed and does not cut itself. Its faces are turned such that the front of each shell is outside, unless the
-    /// shell is in another one, where it bounds a cavity, in which another may be, and so on.
+    /// The surface is closed and does not cut itself. Its faces are turned such that the front of each shell is outside, unless
+    /// the shell is in another one, where it bounds a cavity, in which another may be, and so on.
     #[default]
     Closed,
-    /// A point is inside where the winding number around it is not zero: faces may cut each other, and each keeps the direction that
-    /// it has. What is open is closed first, each hole by faces from its rim to the middle of its vertices; a point behind a flat
-    /// hole is then inside where the hole fills less than half of what is seen from it (a generalised winding number above 1/2).
+    /// A point is inside where the winding number around it is not zero: faces may cut each other, and each keeps the direction
+    /// that it has. What is open is closed first, each hole by faces from its rim to the middle of its vertices; a point behind a
+    /// flat hole is then inside where the hole fills less than half of what is seen from it (a generalised winding number above
+    /// 1/2).
     Winding,
 }
 
@@ -94,6 +99,18 @@ impl Mesh {
     /// [`Error::Invalid`] names the face or the edge at which it is not what the rule asks for, and what to do.
     pub fn from_triangles(vertices: &[DVec3], faces: &[[u32; 3]], rule: MeshRule) -> Result<Self> {
         Self::make(vertices, faces, rule, MeshReport::default()).map_err(Error::Invalid)
+    }
+
+    /// Reads a mesh from an OBJ, STL, PLY or glTF file, whichever it is by its content.
+    ///
+    /// # Errors
+    /// [`Error::Io`] where it cannot be read, and [`Error::Format`] where it is no mesh, or not as the rule asks for.
+    #[cfg(feature = "formats")]
+    pub fn read(path: impl AsRef<std::path::Path>, rule: MeshRule) -> Result<Self> {
+        let path = path.as_ref();
+        let read = read::read(path)?;
+        let made = Self::make(&read.vertices, &read.faces, rule, read.report);
+        made.map_err(|message| Error::format(path, message))
     }
 
     fn make(

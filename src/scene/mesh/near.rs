@@ -105,8 +105,8 @@ impl Mesh {
         }
     }
 
-    /// The unit vector along which [`signed_distance`](Self::signed_distance) grows fastest; at a face the normal that points into
-    /// the mesh, and zero for a mesh without faces.
+    /// The unit vector along which [`signed_distance`](Self::signed_distance) grows fastest; at a face the normal that points
+    /// into the mesh, and zero for a mesh without faces.
     pub fn gradient(&self, point: DVec3) -> DVec3 {
         let Some(nearest) = self.nearest(point) else {
             return DVec3::ZERO;
@@ -126,8 +126,8 @@ impl Mesh {
         if self.keeps(point) { away } else { -away }
     }
 
-    /// True where a face comes into the ellipsoid {centre + axes u: |u| <= deviations}, or touches it. An ellipsoid that is flat, or a
-    /// line or a point, counts as a billionth as thick as it is long.
+    /// True where a face comes into the ellipsoid {centre + axes u: |u| <= deviations}, or touches it. An ellipsoid that is flat,
+    /// or a line or a point, counts as a billionth as thick as it is long.
     pub fn touches_ball(&self, centre: DVec3, axes: DMat3, deviations: f64) -> bool {
         self.visit_ball(centre, axes, deviations, |_| true)
     }

@@ -61,8 +61,8 @@ impl Shells {
                         let [a, b] = [from(half), end]
                             .map(|at| super::weld::place(of.vertices[at as usize]));
                         return Err(format!(
-                            "the mesh has one side only, as a Moebius strip has: its faces cannot all be turned alike, for example \
-                             at the edge from {a} to {b}; {REMEDY}"
+                            "the mesh has one side only, as a Moebius strip has: its faces cannot all be turned alike, for \
+                             example at the edge from {a} to {b}; {REMEDY}"
                         ));
                     }
                 }
@@ -135,8 +135,8 @@ impl Shells {
         parts
     }
 
-    /// Turns whole shells: those that lie in an even number of others have their fronts outside, and the others, which are cavities,
-    /// inside. The faces are in the order of the tree, and so is what is known of them.
+    /// Turns whole shells: those that lie in an even number of others have their fronts outside, and the others, which are
+    /// cavities, inside. The faces are in the order of the tree, and so is what is known of them.
     pub(super) fn face_outward(
         &mut self,
         of: &mut Faces,

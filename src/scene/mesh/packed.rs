@@ -1,16 +1,16 @@
 //! A mesh as shaders have it: single precision, in quads of four words, with a twin of what shaders do with it.
 //!
-//! | quads | what they are |
-//! |---|---|
-//! | 0 | the number of nodes n, that of faces, the first quad of faces (1 + 2 n), 0 |
-//! | 1 + 2 i | of node i: x, y and z of the box's low corner, and the node behind all that are below it (its *skip*) |
-//! | 2 + 2 i | x, y and z of the box's high corner, and for a leaf its first face times 8 plus the number of its faces, 1 to 6; otherwise 0 |
-//! | 1 + 2 n and on | the faces in the order of the leaves, nine words each without gaps: x, y and z of three corners, which turn to the left as seen from the front |
+//! - Quad 0: the number of nodes n, that of faces, the first quad of faces (1 + 2 n), and 0.
+//! - Quad 1 + 2 i, of node i: x, y and z of the low corner of its box, and the node behind all that are below it, its *skip*.
+//! - Quad 2 + 2 i, of node i: x, y and z of the high corner of its box, and for a leaf its first face times 8 plus the number of
+//!   its faces, 1 to 6; for other nodes 0.
+//! - From quad 1 + 2 n on: the faces in the order of the leaves, nine words each without gaps: x, y and z of three corners, which
+//!   turn to the left as seen from the front.
 //!
-//! Numbers with a point are bits of floats. They are relative: (place - [`Mesh::centre`]) / [`Mesh::scale`], from -1 to 1. Boxes are
-//! rounded outward, so that they hold both the corners here and the exact ones. A walk begins at node 0; where it enters node i it
-//! looks at its faces and goes on at i + 1, and where it does not it goes on at the node's skip; it ends at n. A closed mesh takes
-//! at most 58 bytes a face and 16 beside.
+//! Numbers with a point are bits of floats. They are relative: (place - [`Mesh::centre`]) / [`Mesh::scale`], from -1 to 1. Boxes
+//! are rounded outward, so that they hold both the corners here and the exact ones. A walk begins at node 0; where it enters node
+//! i it looks at its faces and goes on at i + 1, and where it does not it goes on at the node's skip; it ends at n. A closed mesh
+//! takes at most 58 bytes a face and 16 beside.
 
 use glam::Vec3;
 
@@ -142,8 +142,8 @@ impl PackedMesh {
         false
     }
 
-    /// Adds all crossings of the line {origin + t direction}, in no order: each as its t, and by how much the winding number changes
-    /// there. They add up to 0 exactly. The origin should be near the mesh, since its distance rounds all places.
+    /// Adds all crossings of the line {origin + t direction}, in no order: each as its t, and by how much the winding number
+    /// changes there. They add up to 0 exactly. The origin should be near the mesh, since its distance rounds all places.
     pub fn crossings(&self, origin: Vec3, direction: Vec3, found: &mut Vec<(f32, f32)>) {
         let z = direction.abs().max_position();
         let axes = [(z + 1) % 3, (z + 2) % 3, z];
@@ -194,7 +194,8 @@ impl PackedMesh {
     }
 }
 
-/// Where the line along z through the origin crosses a face, and how often the face turns around it: 1 where its front looks along z.
+/// Where the line along z through the origin crosses a face, and how often the face turns around it: 1 where its front looks
+/// along z.
 fn crossing(corners: [[f32; 3]; 3]) -> Option<(f32, f32)> {
     let is_left = corners.map(|corner| corner[0] < 0.0);
     let mut turns = 0.0;

@@ -30,8 +30,8 @@ impl Sets {
         (set, is_turned)
     }
 
-    /// Joins the sets of two members, of which one is the other way round than the other or not. It is false where they are joined
-    /// already, and not so.
+    /// Joins the sets of two members, of which one is the other way round than the other or not. It is false where they are
+    /// joined already, and not so.
     pub(super) fn join(&mut self, a: u32, b: u32, is_other_way: bool) -> bool {
         let ((a, a_turned), (b, b_turned)) = (self.find(a), self.find(b));
         let turned = a_turned ^ b_turned ^ is_other_way;

@@ -175,8 +175,8 @@ pub fn sheet(cells: u32, height: f64) -> Triangles {
     (vertices, faces)
 }
 
-/// A random closed mesh that is seen whole from the origin, of about so many faces, 12 at least: a sphere whose vertices have random
-/// distances, from 0.3 to 1.
+/// A random closed mesh that is seen whole from the origin, of about so many faces, 12 at least: a sphere whose vertices have
+/// random distances, from 0.3 to 1.
 pub fn star(faces: u32, seed: u64) -> Triangles {
     let mut random = Random::new(seed);
     let rings = ((f64::from(faces) / 4.0).sqrt().round() as u32).max(2);

@@ -114,8 +114,8 @@ fn drop_duplicates(of: &mut Faces, report: &mut MeshReport) {
     }
 }
 
-/// Drops faces without an area, unless the surface is open without them: three corners of a line, of which the neighbours have only
-/// some. Returns the edges of what is left.
+/// Drops faces without an area, unless the surface is open without them: three corners of a line, of which the neighbours have
+/// only some. Returns the edges of what is left.
 pub(super) fn without_slivers(of: &mut Faces, edges: Edges, report: &mut MeshReport) -> Edges {
     let is_sliver = |face: usize| is_line(of.corners(face));
     let count = (0..of.faces.len()).filter(|face| is_sliver(*face)).count() as u64;

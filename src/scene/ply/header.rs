@@ -21,18 +21,18 @@ const MAX_PROPERTIES: usize = 4096;
 
 /// A header that passed every check that needs no knowledge of Gaussians.
 #[derive(Debug)]
-pub(super) struct PlyHeader {
-    pub(super) encoding: Encoding,
+pub(crate) struct PlyHeader {
+    pub(crate) encoding: Encoding,
     /// In file order.
-    pub(super) elements: Vec<ElementDef>,
+    pub(crate) elements: Vec<ElementDef>,
     /// The offset of the payload, bytes.
-    pub(super) size: u64,
+    pub(crate) size: u64,
     /// Lines up to and with `end_header`.
-    pub(super) lines: u64,
+    pub(crate) lines: u64,
     /// How many of them are blank, which no header should have.
     pub(super) blank: usize,
     /// The byte that ends each line of an ascii payload.
-    pub(super) line_end: u8,
+    pub(crate) line_end: u8,
     /// What the comments say of the Gaussians.
     pub(super) kind: Option<TrainerKind>,
     /// The direction that is up, where a comment says it.
@@ -42,8 +42,11 @@ pub(super) struct PlyHeader {
 }
 
 impl PlyHeader {
+    /// No header is longer.
+    pub(crate) const MOST_BYTES: usize = MAX_BYTES;
+
     /// Parses the header at the start of `bytes`, the file's first [`MAX_BYTES`] (or all of it, if shorter).
-    pub(super) fn parse(bytes: &[u8]) -> Result<Self, String> {
+    pub(crate) fn parse(bytes: &[u8]) -> Result<Self, String> {
         let (mut lines, size, line_end) = cut(bytes)?;
         scan(&lines)?;
         let all = lines.len();

@@ -15,7 +15,7 @@ use std::path::Path;
 use glam::DVec3;
 use ply_rs::ply::Encoding;
 
-use self::header::PlyHeader;
+pub(super) use self::header::PlyHeader;
 use self::layout::Layout;
 pub(super) use self::number::Number;
 use self::trained::TrainerKind;

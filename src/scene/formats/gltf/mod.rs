@@ -4,6 +4,7 @@ mod accessor;
 mod annotations;
 mod buffers;
 mod nodes;
+mod triangles;
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
@@ -15,6 +16,7 @@ use self::accessor::Accessor;
 use self::annotations::AnnotationsReader;
 use self::buffers::Buffers;
 use self::nodes::Transform;
+pub(crate) use self::triangles::triangles;
 use super::super::assemble::{ColumnForm, OPACITY, ROTATION, SCALES, SH, SLOTS, room_with};
 use super::super::input::ALL;
 use super::super::{Property, SH_0, SortBy, sh_coefficients};
@@ -61,6 +63,14 @@ pub(super) fn read_binary(
     files: Files<'_>,
     asked: &[&str],
 ) -> Result<FormatOutput, Failure> {
+    let (document, binary, behind) = chunks(bytes)?;
+    let mut made = read_document(&document, binary, files, asked)?;
+    made.report.trailing_bytes = behind as u64;
+    Ok(made)
+}
+
+/// The document of a `.glb`, its buffer, and how many bytes follow.
+fn chunks(bytes: &[u8]) -> Result<(Value, Option<&[u8]>, usize), Failure> {
     let what = "the .glb";
     let mut bytes = Bytes(bytes);
     bytes.take(4, what)?;
@@ -83,9 +93,7 @@ pub(super) fn read_binary(
         }
     }
     let document = document.ok_or_else(|| "the .glb has no JSON; get it again".to_owned())?;
-    let mut made = read_document(&document, binary, files, asked)?;
-    made.report.trailing_bytes = bytes.0.len() as u64;
-    Ok(made)
+    Ok((document, binary, bytes.0.len()))
 }
 
 /// Reads a document; `binary` is the buffer of the file that it is in.

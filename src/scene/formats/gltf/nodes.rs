@@ -54,6 +54,19 @@ impl Transform {
         }
     }
 
+    /// Where a point within it stands.
+    pub(super) fn of_point(&self, point: DVec3) -> DVec3 {
+        match self {
+            Self::Similar(placement) => placement.to_world(point),
+            Self::Other(affine) => affine.transform_point3(point),
+        }
+    }
+
+    /// True where it makes a left hand of a right one.
+    pub(super) fn mirrors(&self) -> bool {
+        matches!(self, Self::Other(affine) if affine.matrix3.determinant() < 0.0)
+    }
+
     /// True where nothing is left of what it is of, by which a file hides it.
     pub(super) fn hides(&self) -> bool {
         matches!(self, Self::Other(affine) if affine.matrix3 == DMat3::ZERO)

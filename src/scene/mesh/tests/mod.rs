@@ -1,8 +1,15 @@
 mod ball;
 mod checks;
+#[cfg(feature = "formats")]
+mod faces;
+#[cfg(feature = "formats")]
+mod files;
 mod inside;
 mod lines;
 mod packed;
+#[cfg(feature = "formats")]
+mod read;
+mod times;
 mod tree;
 
 use glam::DVec3;

@@ -1,5 +1,7 @@
 //! Faces of a mesh that cut each other, found exactly.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use glam::{BVec3, DVec3};
 use robust::{Coord, orient2d};
 
@@ -13,7 +15,7 @@ use rara_base::parallel::in_parallel;
 /// Faces that one task looks at.
 const TASK: usize = 1 << 13;
 /// Pairs of faces that a task looks at for each of its faces before it gives up: real meshes have some tens.
-const MOST_PAIRS: u64 = 4096;
+const MOST_PAIRS: u64 = 2048;
 
 /// What a task found.
 #[derive(Default)]
@@ -27,9 +29,18 @@ struct Found {
 /// Refuses faces that cut each other, or lie in each other. Those that touch in corners or edges that they share may.
 pub(super) fn check(of: &Faces, tree: &MeshTree) -> Result<(), String> {
     let starts = (0..of.faces.len()).step_by(TASK);
+    let has_given_up = AtomicBool::new(false);
     let found = in_parallel(starts, |start| {
-        look(of, tree, start, (start + TASK).min(of.faces.len()))
+        let end = (start + TASK).min(of.faces.len());
+        look(of, tree, [start, end], &has_given_up)
     });
+    if found.iter().any(|found| found.is_unfinished) {
+        return Err(
+            "so many faces of the mesh lie beside each other that it takes too long to see whether it cuts itself; give it fewer \
+             faces, or have its inside decided by the winding number, which does not ask"
+                .into(),
+        );
+    }
     let count: u64 = found.iter().map(|found| found.count).sum();
     if let Some([a, b]) = found.iter().find_map(|found| found.first) {
         let places = [a, b].map(|face| {
@@ -46,21 +57,17 @@ pub(super) fn check(of: &Faces, tree: &MeshTree) -> Result<(), String> {
             places[0], places[1]
         ));
     }
-    match found.iter().any(|found| found.is_unfinished) {
-        false => Ok(()),
-        true => Err(
-            "so many faces of the mesh lie beside each other that it takes too long to see whether it cuts itself; give it fewer \
-             faces, or have its inside decided by the winding number, which does not ask"
-                .into(),
-        ),
-    }
+    Ok(())
 }
 
 /// Looks at some faces, each with those behind it.
-fn look(of: &Faces, tree: &MeshTree, start: usize, end: usize) -> Found {
+fn look(of: &Faces, tree: &MeshTree, [start, end]: [usize; 2], has_given_up: &AtomicBool) -> Found {
     let mut found = Found::default();
     let mut left = MOST_PAIRS * (end - start) as u64;
     for face in start as u32..end as u32 {
+        if has_given_up.load(Ordering::Relaxed) {
+            break;
+        }
         let corners = of.corners(face as usize);
         let [low, high] = hull(corners);
         found.is_unfinished |= tree.walk(
@@ -85,7 +92,7 @@ fn look(of: &Faces, tree: &MeshTree, start: usize, end: usize) -> Found {
             },
         );
         if found.is_unfinished {
-            break;
+            has_given_up.store(true, Ordering::Relaxed);
         }
     }
     found

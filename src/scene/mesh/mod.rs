@@ -3,6 +3,7 @@
 //! A [`Mesh`] has its faces in the order of a hierarchy of boxes, by which all questions about it are answered. Its front is
 //! outside: the corners of a face turn to the left as seen from there.
 
+mod duplicates;
 mod edges;
 mod lines;
 mod meet;

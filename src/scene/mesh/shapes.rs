@@ -176,7 +176,7 @@ pub fn sheet(cells: u32, height: f64) -> Triangles {
 }
 
 /// A random closed mesh that is seen whole from the origin, of about so many faces, 12 at least: a sphere whose vertices have
-/// random distances, from 0.3 to 1.
+/// random distances, from 0.1 to 1.1.
 pub fn star(faces: u32, seed: u64) -> Triangles {
     let mut random = Random::new(seed);
     let rings = ((f64::from(faces) / 4.0).sqrt().round() as u32).max(2);
@@ -196,8 +196,15 @@ pub fn star(faces: u32, seed: u64) -> Triangles {
         }
     }
     vertices.push(-DVec3::Z);
+    // Coarse ones are all spikes. Fine ones have bumps, and spikes about as high as their faces are long.
+    let bumps: Vec<_> = (0..8)
+        .map(|_| (random.direction(), random.range(2.0, 6.0)))
+        .collect();
+    let spike = (2.0 / f64::from(rings)).min(0.65);
     for vertex in &mut vertices {
-        *vertex *= random.range(0.3, 1.0);
+        let bump = |(along, times): &(DVec3, f64)| (times * along.dot(*vertex)).sin();
+        let height = bumps.iter().map(bump).sum::<f64>() / 8.0;
+        *vertex *= (0.65 + 0.5 * (0.65 - spike) * height) * (1.0 + spike * random.range(-0.8, 0.8));
     }
     let at = |ring: u32, place: u32| 1 + (ring - 1) * around + place % around;
     let last = vertices.len() as u32 - 1;

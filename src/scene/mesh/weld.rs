@@ -4,6 +4,7 @@ use glam::DVec3;
 use robust::{Coord, orient2d};
 
 use super::MeshRule;
+use super::duplicates::drop_duplicates;
 use super::edges::Edges;
 use super::orient::normal;
 use super::report::MeshReport;
@@ -79,39 +80,6 @@ pub(super) fn welded(
         drop_duplicates(&mut made, report);
     }
     Ok(made)
-}
-
-/// Drops all but one of the faces that have the same three vertices.
-fn drop_duplicates(of: &mut Faces, report: &mut MeshReport) {
-    let sorted = |face: [u32; 3]| {
-        let mut face = face;
-        face.sort_unstable();
-        face
-    };
-    let buckets = Buckets::new(
-        of.vertices.len(),
-        of.faces.iter().map(|&face| {
-            let [least, middle, most] = sorted(face);
-            (least, (u64::from(middle) << 32) | u64::from(most))
-        }),
-    );
-    let mut is_dropped = Vec::new();
-    for bucket in buckets.all() {
-        for pair in bucket.windows(2) {
-            if pair[0].0 == pair[1].0 {
-                is_dropped.resize(of.faces.len(), false);
-                is_dropped[pair[1].1 as usize] = true;
-                report.duplicate += 1;
-            }
-        }
-    }
-    if !is_dropped.is_empty() {
-        let mut number = 0;
-        of.faces.retain(|_| {
-            number += 1;
-            !is_dropped[number - 1]
-        });
-    }
 }
 
 /// Drops faces without an area, unless the surface is open without them: three corners of a line, of which the neighbours have

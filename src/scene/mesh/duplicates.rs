@@ -6,7 +6,7 @@ use super::sets::Sets;
 use super::weld::{Buckets, Faces};
 
 /// Drops all but one of the faces that have the same three vertices, and that one too where it is of a wall: one of two that look
-/// in opposite directions, with which alone the surface has edges of an odd number of faces. So two shells that share a wall become
+/// in opposite directions, with which alone the surface has edges of an odd number of faces. So two shells that share a wall are
 /// one.
 pub(super) fn drop_duplicates(of: &mut Faces, report: &mut MeshReport) {
     let key = |mut face: [u32; 3]| {

@@ -4,18 +4,19 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use glam::{BVec3, DVec3};
 use robust::{Coord, orient2d};
+use smallvec::SmallVec;
 
 use super::lines::below;
 use super::orient::normal;
-use super::tree::MeshTree;
+use super::tree::{LEAF, MeshTree};
 use super::weld::{Faces, place};
 use rara_base::counted::grouped;
 use rara_base::parallel::in_parallel;
 
-/// Faces that one task looks at.
-const TASK: usize = 1 << 13;
-/// Pairs of faces that a task looks at for each of its faces before it gives up: real meshes have some tens.
-const MOST_PAIRS: u64 = 2048;
+/// Nodes of the tree that one task looks at.
+const TASK: usize = 1 << 12;
+/// Pairs of faces that a task looks at before it gives up, in a second or two. Those of real meshes look at some 100 000.
+pub(super) const MOST_PAIRS: u64 = 1 << 24;
 
 /// What a task found.
 #[derive(Default)]
@@ -27,12 +28,13 @@ struct Found {
 }
 
 /// Refuses faces that cut each other, or lie in each other. Those that touch in corners or edges that they share may.
-pub(super) fn check(of: &Faces, tree: &MeshTree) -> Result<(), String> {
-    let starts = (0..of.faces.len()).step_by(TASK);
+pub(super) fn check(of: &Faces, tree: &MeshTree, most_pairs: u64) -> Result<(), String> {
+    let nodes = tree.nodes().len();
+    let starts = (0..nodes).step_by(TASK);
     let has_given_up = AtomicBool::new(false);
     let found = in_parallel(starts, |start| {
-        let end = (start + TASK).min(of.faces.len());
-        look(of, tree, [start, end], &has_given_up)
+        let end = (start + TASK).min(nodes);
+        look(of, tree, [start, end], most_pairs, &has_given_up)
     });
     if found.iter().any(|found| found.is_unfinished) {
         return Err(
@@ -60,30 +62,41 @@ pub(super) fn check(of: &Faces, tree: &MeshTree) -> Result<(), String> {
     Ok(())
 }
 
-/// Looks at some faces, each with those behind it.
-fn look(of: &Faces, tree: &MeshTree, [start, end]: [usize; 2], has_given_up: &AtomicBool) -> Found {
+/// Looks at the faces of the leaves among some nodes, with those behind them.
+fn look(
+    of: &Faces,
+    tree: &MeshTree,
+    [start, end]: [usize; 2],
+    mut left: u64,
+    has_given_up: &AtomicBool,
+) -> Found {
     let mut found = Found::default();
-    let mut left = MOST_PAIRS * (end - start) as u64;
-    for face in start as u32..end as u32 {
+    for at in start..end {
+        let leaf = tree.nodes()[at];
+        if leaf.count == 0 {
+            continue;
+        }
         if has_given_up.load(Ordering::Relaxed) {
             break;
         }
-        let corners = of.corners(face as usize);
-        let [low, high] = hull(corners);
-        found.is_unfinished |= tree.walk(
-            |node| {
-                let is_behind = node.count == 0 || node.first + node.count > face + 1;
-                is_behind && overlap([node.low, node.high], [low, high])
-            },
+        let own = leaf.first..leaf.first + leaf.count;
+        let hulls: SmallVec<[_; LEAF]> = own
+            .clone()
+            .map(|face| hull(of.corners(face as usize)))
+            .collect();
+        found.is_unfinished |= tree.walk_from(
+            at,
+            |node| overlap([node.low, node.high], [leaf.low, leaf.high]),
             |other| {
-                if other <= face {
-                    return false;
-                }
                 let others = of.corners(other as usize);
-                if overlap(hull(others), [low, high]) {
+                let hull = hull(others);
+                for (face, own) in own.clone().zip(&hulls) {
+                    if face >= other || !overlap(hull, *own) {
+                        continue;
+                    }
                     left = left.saturating_sub(1);
                     let vertices = [face, other].map(|face| of.faces[face as usize]);
-                    if meet(vertices, [corners, others]) {
+                    if meet(vertices, [of.corners(face as usize), others]) {
                         found.count += 1;
                         found.first.get_or_insert([face, other]);
                     }
@@ -107,30 +120,46 @@ fn overlap(a: [DVec3; 2], b: [DVec3; 2]) -> bool {
     !apart.any()
 }
 
+/// On which side of the plane of a face the corners of another one are, exactly: how far, more or less, and 0 for those that are
+/// in it, as the corners that both have are.
+fn sides(own: [DVec3; 3], is_shared: [bool; 3], other: [DVec3; 3]) -> [f64; 3] {
+    let edges = [other[1] - other[0], other[2] - other[0]];
+    let up = edges[0].cross(edges[1]);
+    let size = edges[0].abs().max_element() * edges[1].abs().max_element();
+    [0, 1, 2].map(|at| {
+        if is_shared[at] {
+            return 0.0;
+        }
+        let from = other[0] - own[at];
+        let height = up.dot(from);
+        // Most are farther than rounding can make up.
+        match height.abs() > 64.0 * f64::EPSILON * size * from.abs().max_element() {
+            true => height,
+            false => below(other, own[at]),
+        }
+    })
+}
+
 /// True where two faces have points in common beside corners and edges that they share. A corner that only touches the other face
 /// is nothing that they cut.
 fn meet(vertices: [[u32; 3]; 2], corners: [[DVec3; 3]; 2]) -> bool {
-    let is_shared = vertices[0].map(|vertex| vertices[1].contains(&vertex));
+    let [is_shared, is_shared_of_other] =
+        [0, 1].map(|own| vertices[own].map(|vertex| vertices[1 - own].contains(&vertex)));
     let shared = is_shared.iter().filter(|shared| **shared).count();
-    // On which side of the other face's plane the corners of a face are; those that they share are in it.
-    let sides = |own: usize| {
-        let other = 1 - own;
-        [0, 1, 2].map(|at| match vertices[other].contains(&vertices[own][at]) {
-            true => 0.0,
-            false => below(corners[other], corners[own][at]),
-        })
+    // All that they do not share is on one side of the other's plane.
+    let is_apart = |sides: [f64; 3]| {
+        let count = |is: fn(&f64) -> bool| sides.iter().filter(|side| is(side)).count();
+        let (above, below) = (count(|side| *side > 0.0), count(|side| *side < 0.0));
+        above.max(below) == 3 - shared && above.min(below) == 0
     };
-    let first = sides(0);
+    let first = sides(corners[0], is_shared, corners[1]);
     if first == [0.0; 3] {
         return lie_in_each_other(corners);
     }
-    let is_apart = |sides: [f64; 3]| {
-        sides.iter().all(|side| *side > 0.0) || sides.iter().all(|side| *side < 0.0)
-    };
-    if shared > 1 || is_apart(first) {
+    if is_apart(first) {
         return false;
     }
-    let second = sides(1);
+    let second = sides(corners[1], is_shared_of_other, corners[0]);
     if is_apart(second) {
         return false;
     }
@@ -145,11 +174,17 @@ fn pierces(own: [DVec3; 3], sides: [f64; 3], other: [DVec3; 3]) -> bool {
         if !is_through {
             return false;
         }
-        let around = [0, 1, 2].map(|at_other| {
+        let around = |at_other: usize| {
             let edge = [other[at_other], other[(at_other + 1) % 3]];
             below([own[at], own[next], edge[0]], edge[1])
-        });
-        around.iter().all(|side| *side >= 0.0) || around.iter().all(|side| *side <= 0.0)
+        };
+        let (first, second) = (around(0), around(1));
+        if first.min(second) < 0.0 && first.max(second) > 0.0 {
+            return false;
+        }
+        let third = around(2);
+        let [least, most] = [first.min(second).min(third), first.max(second).max(third)];
+        least >= 0.0 || most <= 0.0
     })
 }
 

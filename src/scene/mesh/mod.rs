@@ -144,13 +144,10 @@ impl Mesh {
         };
         drop(edges);
         let (tree, order) = MeshTree::build(&made.vertices, &made.faces);
-        made.faces = order
-            .iter()
-            .map(|face| made.faces[*face as usize])
-            .collect();
+        made = made.in_order(&order);
         if let Some(shells) = &mut shells {
             shells.reorder(&order);
-            meet::check(&made, &tree)?;
+            meet::check(&made, &tree, meet::MOST_PAIRS)?;
             shells.face_outward(&mut made, &tree, &mut report);
         }
         let (low, high) = match tree.nodes().first() {

@@ -146,12 +146,18 @@ impl MeshTree {
     /// Calls `visit` for each face of the leaves that `enters` and all nodes above do. It ends early where `visit` returns true,
     /// and says whether it did.
     #[inline]
-    pub fn walk(
+    pub fn walk(&self, enters: impl FnMut(&Node) -> bool, visit: impl FnMut(u32) -> bool) -> bool {
+        self.walk_from(0, enters, visit)
+    }
+
+    /// The part of [`walk`](Self::walk) that begins at a node, whatever is above it.
+    #[inline]
+    pub(super) fn walk_from(
         &self,
+        mut at: usize,
         mut enters: impl FnMut(&Node) -> bool,
         mut visit: impl FnMut(u32) -> bool,
     ) -> bool {
-        let mut at = 0;
         while let Some(node) = self.nodes.get(at) {
             if !enters(node) {
                 at = node.skip as usize;

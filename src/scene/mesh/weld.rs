@@ -24,6 +24,26 @@ impl Faces {
     pub(super) fn corners(&self, face: usize) -> [DVec3; 3] {
         self.faces[face].map(|vertex| self.vertices[vertex as usize])
     }
+
+    /// The faces in another order, and the vertices as those need them first, so that what is close is so in memory too.
+    pub(super) fn in_order(&self, order: &[u32]) -> Self {
+        let mut made = Self {
+            vertices: Vec::with_capacity(self.vertices.len()),
+            faces: Vec::with_capacity(order.len()),
+        };
+        let mut numbers = vec![u32::MAX; self.vertices.len()];
+        for face in order {
+            made.faces.push(self.faces[*face as usize].map(|vertex| {
+                let number = &mut numbers[vertex as usize];
+                if *number == u32::MAX {
+                    *number = made.vertices.len() as u32;
+                    made.vertices.push(self.vertices[vertex as usize]);
+                }
+                *number
+            }));
+        }
+        made
+    }
 }
 
 /// A place as messages have it.

@@ -9,6 +9,7 @@ mod lines;
 mod packed;
 #[cfg(feature = "formats")]
 mod read;
+mod repairs;
 mod times;
 mod tree;
 

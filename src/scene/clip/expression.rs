@@ -208,7 +208,11 @@ fn prism(text: &str) -> Result<Expression> {
     let text = text.split_once(':').map_or("", |(_, rest)| rest);
     #[cfg(feature = "json")]
     if let Some(prisms) = super::geojson::of_file(text) {
-        return prisms;
+        let mut prisms: Vec<_> = prisms?.into_iter().map(Expression::Prism).collect();
+        return Ok(match prisms.len() {
+            1 => prisms.remove(0),
+            _ => Expression::Any(prisms),
+        });
     }
     Prism::read(text).map(Expression::Prism)
 }

@@ -5,21 +5,20 @@ use std::path::Path;
 use ::geojson::{GeoJson, GeometryValue, PolygonType};
 use glam::DVec2;
 
-use super::prism::head;
-use super::{Expression, Prism};
+use super::prism::{Prism, head};
 use rara_base::error::{Error, Result};
 use rara_base::json;
 
 /// Reads the text that follows `polygon:` if it names a file: `FILE`, across z, or `AXIS;FILE`, where the head is as before corners.
-/// The prisms of several polygons keep together what any of them keeps.
-pub(super) fn of_file(text: &str) -> Option<Result<Expression>> {
+/// There is one prism at least.
+pub(super) fn of_file(text: &str) -> Option<Result<Vec<Prism>>> {
     let (before, file) = text.rsplit_once(';').unwrap_or(("z", text));
     let path = Path::new(file.trim());
     let ending = path.extension()?.to_ascii_lowercase();
     (ending == "geojson" || ending == "json").then(|| prisms(before, path))
 }
 
-fn prisms(before: &str, path: &Path) -> Result<Expression> {
+fn prisms(before: &str, path: &Path) -> Result<Vec<Prism>> {
     let (base, heights, _) = head(before)?;
     let format = |message: String| Error::format(path, message);
     let text = json::read(path, "polygons")?;
@@ -37,8 +36,7 @@ fn prisms(before: &str, path: &Path) -> Result<Expression> {
         };
         let ring = |ring: &Vec<_>| ring.iter().map(corner).collect::<Result<Vec<_>>>();
         let rings = polygon.iter().map(ring).collect::<Result<Vec<_>>>()?;
-        let prism = Prism::new(base.clone(), &rings, heights).map_err(of_polygon)?;
-        prisms.push(Expression::Prism(prism));
+        prisms.push(Prism::new(base.clone(), &rings, heights).map_err(of_polygon)?);
         Ok(())
     };
     for geometry in geometries(document) {
@@ -55,10 +53,9 @@ fn prisms(before: &str, path: &Path) -> Result<Expression> {
             }
         }
     }
-    match prisms.len() {
-        0 => Err(format("there is no polygon in it".into())),
-        1 => Ok(prisms.remove(0)),
-        _ => Ok(Expression::Any(prisms)),
+    match prisms.is_empty() {
+        true => Err(format("there is no polygon in it".into())),
+        false => Ok(prisms),
     }
 }
 
@@ -88,6 +85,7 @@ fn geometries(document: GeoJson) -> Vec<GeometryValue> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::clip::Expression;
 
     fn read(name: &str, text: &str, before: &str) -> Result<Expression> {
         let path = std::env::temp_dir().join(format!("rara-{}-{name}.geojson", std::process::id()));

@@ -1,9 +1,9 @@
 //! Faces that have the same corners.
 
 use super::edges::Edges;
+use super::faces::{Buckets, Faces};
 use super::report::MeshReport;
 use super::sets::Sets;
-use super::weld::{Buckets, Faces};
 
 /// Drops all but one of the faces that have the same three vertices, and that one too where it is of a wall: one of two that look
 /// in opposite directions, with which alone the surface has edges of an odd number of faces. So two shells that share a wall are

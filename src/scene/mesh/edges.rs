@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 
+use super::faces::{Buckets, Faces, place};
 use super::report::MeshReport;
 use super::sets::Sets;
-use super::weld::{Buckets, Faces, place};
 use rara_base::counted::{counted, grouped};
 
 /// No half-edge.

@@ -6,10 +6,9 @@ use glam::{BVec3, DVec3};
 use robust::{Coord, orient2d};
 use smallvec::SmallVec;
 
+use super::faces::{Faces, normal, place};
 use super::lines::below;
-use super::orient::normal;
 use super::tree::{LEAF, MeshTree};
-use super::weld::{Faces, place};
 use rara_base::counted::grouped;
 use rara_base::parallel::in_parallel;
 

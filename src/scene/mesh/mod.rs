@@ -5,6 +5,7 @@
 
 mod duplicates;
 mod edges;
+mod faces;
 mod lines;
 mod meet;
 mod near;

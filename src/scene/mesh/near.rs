@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec3};
 
 use super::Mesh;
-use super::orient::normal;
+use super::faces::normal;
 use super::tree::Node;
 
 /// The point of a mesh that is nearest to another one.

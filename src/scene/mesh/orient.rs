@@ -1,13 +1,11 @@
 //! Which side of each face is its front: that of its shell is outside, and in the hollow of a cavity.
 
-use glam::DVec3;
-
 use super::edges::{Edge, Edges, NONE};
+use super::faces::{Faces, normal, place};
 use super::lines::{crossed_above, may_be_above};
 use super::report::MeshReport;
 use super::sets::Sets;
 use super::tree::MeshTree;
-use super::weld::Faces;
 
 /// The shell of each face, and whether the face was turned.
 pub(super) struct Shells {
@@ -58,8 +56,7 @@ impl Shells {
                         open.push(other as u32);
                     } else if self.is_turned[other] != turned {
                         let end = of.faces[half as usize / 3][(half as usize + 1) % 3];
-                        let [a, b] = [from(half), end]
-                            .map(|at| super::weld::place(of.vertices[at as usize]));
+                        let [a, b] = [from(half), end].map(|at| place(of.vertices[at as usize]));
                         return Err(format!(
                             "the mesh has one side only, as a Moebius strip has: its faces cannot all be turned alike, for \
                              example at the edge from {a} to {b}; {REMEDY}"
@@ -209,9 +206,4 @@ impl Shells {
             .map(|face| self.is_turned[*face as usize])
             .collect();
     }
-}
-
-/// A normal of a face, as long as twice its area.
-pub(super) fn normal([a, b, c]: [DVec3; 3]) -> DVec3 {
-    (b - a).cross(c - a)
 }

@@ -1,5 +1,5 @@
 use super::*;
-use crate::mesh::weld::Faces;
+use crate::mesh::faces::Faces;
 
 fn refusal((vertices, faces): &Triangles, rule: MeshRule) -> String {
     match Mesh::from_triangles(vertices, faces, rule) {

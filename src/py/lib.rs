@@ -17,7 +17,7 @@ mod _rara {
     #[pymodule_export]
     use super::camera::{Camera, orbit, path, section};
     #[pymodule_export]
-    use super::clip::{check_clip, clip_between, clip_keeps, load_clip, save_clip};
+    use super::clip::{check_clip, load_clip};
     #[pymodule_export]
     use super::gaussians::Gaussians;
     #[pymodule_export]
@@ -25,7 +25,7 @@ mod _rara {
     #[pymodule_export]
     use super::renderer::{Renderer, devices, truth};
     #[pymodule_export]
-    use super::scene::{Numbers, bounds, load};
+    use super::scene::{Numbers, bounds, clip_between, clip_keeps, load, save_clip};
 
     #[pymodule_init]
     fn begin() {

@@ -1,16 +1,20 @@
-//! Scenes: layers of Gaussians, and reading them.
+//! Scenes: layers of Gaussians, reading them, and clips within them.
 
 use std::cell::LazyCell;
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use glam::{DQuat, DVec3};
+use numpy::PyArrayDyn;
 use pyo3::prelude::*;
-use rara::clip::Expression;
+use rara::clip::{Expression, NamedClip, clips_to_json};
 use rara::scene::layers::{FileNumbers, LayerClip, Region, SelectionRequest, entries, load_by};
 use rara::scene::{Bounds, Property, load_layer, load_with, trained_folder};
 use rara::{Error, LayerState, Placement, Result, Scene};
+use rara_base::files::write_atomically;
 
+use crate::arrays::{numbers, owned};
+use crate::clip::ClipOf;
 use crate::errors::{invalid, of_argument, raised};
 use crate::gaussians::{Gaussians, Report, Set};
 
@@ -251,4 +255,66 @@ pub(crate) fn load(
         notes,
     };
     Ok((layers.collect(), up.map(Into::into), report))
+}
+
+/// The expression of a clip that may need a scene.
+fn settled(clip: &ClipOf, scene: Option<&SceneOf>) -> PyResult<Expression> {
+    match (&clip.0, scene) {
+        (Region::Fixed(fixed), _) => Ok(fixed.clone()),
+        (_, Some(scene)) => clip
+            .expression(&scene.scene(&[]).map_err(raised)?)
+            .map_err(raised),
+        (_, None) => Err(invalid(
+            "scene is missing: the clip has lengths in percent of one",
+        )),
+    }
+}
+
+/// Says of each point whether a clip keeps it.
+#[pyfunction]
+pub(crate) fn clip_keeps<'py>(
+    clip: ClipOf,
+    points: &Bound<'py, PyAny>,
+    scene: Option<SceneOf>,
+) -> PyResult<Bound<'py, PyArrayDyn<bool>>> {
+    let clip = settled(&clip, scene.as_ref())?.clip();
+    let array = numbers::<f64>(points, "points", &[None, Some(3)])?;
+    let each = array.as_slice()?.as_chunks().0.iter();
+    let kept: Vec<_> = each
+        .map(|point| clip.keeps(DVec3::from_array(*point)))
+        .collect();
+    let count = kept.len();
+    owned(points.py(), kept, &[count])
+}
+
+/// The text of the clip between two others.
+#[pyfunction]
+pub(crate) fn clip_between(
+    from: ClipOf,
+    to: ClipOf,
+    share: f64,
+    scene: Option<SceneOf>,
+) -> PyResult<String> {
+    let (from, to) = (
+        settled(&from, scene.as_ref())?,
+        settled(&to, scene.as_ref())?,
+    );
+    Ok(from.between(&to, share).map_err(raised)?.to_string())
+}
+
+/// Writes a clip to a JSON file.
+#[pyfunction]
+pub(crate) fn save_clip(clip: ClipOf, path: PathBuf, scene: Option<SceneOf>) -> PyResult<()> {
+    let name = path
+        .file_stem()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into();
+    let clip = settled(&clip, scene.as_ref())?;
+    let json = clips_to_json(&[NamedClip {
+        name,
+        clip,
+        layer: None,
+    }]);
+    write_atomically(&path, |file| file.write_all(json.as_bytes())).map_err(raised)
 }

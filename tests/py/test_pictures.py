@@ -243,8 +243,10 @@ def test_the_truth_is_near(renderer, gaussians):
 
 @pytest.mark.skipif(not hasattr(signal, "SIGINT") or sys.platform == "win32", reason="signals are sent as on Unix")
 def test_ctrl_c_ends_a_loop_of_pictures():
+    # Programs that are begun in the background of a shell's script ignore Ctrl-C unless they say otherwise.
     code = """
-import itertools, rara
+import itertools, rara, signal
+signal.signal(signal.SIGINT, signal.default_int_handler)
 scene = rara.generate("general", 500)
 shots = (f"plane:1,0,0,{n % 7 / 7}" for n in itertools.count())
 for picture in rara.Renderer().pictures(scene, shots, size=(32, 24), mode="hard"):

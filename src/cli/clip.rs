@@ -53,14 +53,16 @@ pub struct ClipArgs {
 }
 
 fn shapes() -> String {
-    let usages: Vec<&str> = Solid::usages().chain([Prism::USAGE]).collect();
+    let usages: Vec<&str> = Expression::usages().collect();
     format!(
-        "Keep the inside of a shape (repeatable); '!SHAPE' keeps its outside\n\n{} plane:x=40% is \
-         perpendicular to the x axis at 40 % of the scene's robust bounds, and keeps the side of larger x. slab:z=40%..60% is \
-         between two such planes. Points and lengths can be shares of these bounds, too: \
-         sphere:50%,50%,50%,20% has its centre in the middle, and a radius of 20 % of the longest side. Sizes of a box or an \
-         ellipsoid are shares of the side along x, y or z. In a shell, put single quotes around a leading !: '!box:0,0,0,1,1,1'.",
-        usages.join(" ")
+        "Keep the inside of a shape (repeatable); '!SHAPE' keeps its outside\n\n{}\n\nThe numbers may be shares of the scene's \
+         robust bounds, which rara info prints. plane:x=40% is perpendicular to the x axis, at 40 % of the way from the smallest x \
+         of the bounds to the largest, and keeps the side of larger x. slab:z=40%..60% lies between two such planes. In other \
+         shapes, a share in place of a coordinate is a position between the ends of the bounds along this axis. A share in place \
+         of a half size, or of a radius of an ellipsoid, is a share of the side of the bounds along its axis; any other radius is \
+         a share of the longest side. sphere:50%,50%,50%,20% therefore has its centre in the middle of the bounds, and a radius of \
+         20 % of their longest side.\n\nIn a shell, put single quotes around a leading !: '!box:0,0,0,1,1,1'.",
+        usages.join("\n")
     )
 }
 

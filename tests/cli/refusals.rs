@@ -190,8 +190,9 @@ fn a_wrong_command_line_is_status_2_and_one_line() {
         ("render x.ply -o a.png --clip plane:1,0,0", "4 numbers"),
         (
             "render x.ply -o a.png --clip ball:1,0,0",
-            "'ball' is not a shape",
+            "'ball' is not a shape; use plane, slab, box",
         ),
+        ("render x.ply -o a.png --clip ball:1,0,0", "cone, polygon"),
         ("render x.ply -o a.png --clip sphere:0,0,0,0", "above zero"),
         (
             "render x.ply -o a.png --clip !cylinder:0,0,0,1,0,0",

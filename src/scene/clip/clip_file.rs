@@ -10,8 +10,8 @@ use serde::de::{EnumAccess, Error as _, MapAccess, SeqAccess, Unexpected, Varian
 use serde::ser::SerializeStructVariant;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use super::expression::POLYGON;
-use super::shape_text::{kind, names};
+use super::expression::{POLYGON, names};
+use super::shape_text::kind;
 use super::solid::Kind;
 use super::{Expression, Plane, Prism, PrismBase, Shape};
 use rara_base::error::{Error, Result};
@@ -139,11 +139,7 @@ impl<'de> Visitor<'de> for NodeVisitor {
     type Value = Node;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(
-            f,
-            "whole, all, any, not or a shape ({}, {POLYGON})",
-            names()
-        )
+        write!(f, "whole, all, any, not or a shape ({})", names())
     }
 
     fn visit_enum<A: EnumAccess<'de>>(self, node: A) -> std::result::Result<Node, A::Error> {

@@ -3,8 +3,9 @@
 use std::str::FromStr;
 use std::{fmt, slice};
 
-use super::shape_text::{kind, names};
-use super::{Clip, ClipOp, Plane, Prism, Shape};
+use super::shape_text::kind;
+use super::solid::KINDS;
+use super::{Clip, ClipOp, Plane, Prism, Shape, Solid};
 use crate::bounds::Bounds;
 use crate::text_reader::{ShapeTree, TextReader, joined};
 use rara_base::error::{Error, Result, shortened};
@@ -40,6 +41,16 @@ pub enum Expression {
 /// The word with which the text of a prism begins.
 pub(super) const POLYGON: &str = "polygon";
 
+/// The kinds of shapes that are not solids: the word with which their text begins, and their usage.
+const OTHERS: &[(&str, &str)] = &[(POLYGON, Prism::USAGE)];
+
+/// The names of all kinds of shapes, for messages.
+pub(super) fn names() -> String {
+    let solids = KINDS.iter().map(|kind| kind.name);
+    let others = OTHERS.iter().map(|(name, _)| *name);
+    solids.chain(others).collect::<Vec<_>>().join(", ")
+}
+
 impl Expression {
     /// The plane, if it is a shape that is a half-space.
     pub fn as_plane(&self) -> Option<Plane> {
@@ -49,12 +60,29 @@ impl Expression {
         }
     }
 
-    /// The prism of a text that begins as one, perhaps with a `!` before it.
+    /// How each kind of shape is written as text, and what that means: a few sentences each.
+    pub fn usages() -> impl Iterator<Item = &'static str> {
+        Solid::usages().chain(OTHERS.iter().map(|(_, usage)| *usage))
+    }
+
+    /// Reads the text of one shape or prism, perhaps with a `!` before it, as [`ShapeTree::read`] reads expressions.
     #[cfg(all(feature = "formats", feature = "json"))] // for layers' regions
-    pub(crate) fn prism(text: &str) -> Option<Result<Self>> {
+    pub(crate) fn read_leaf(text: &str, bounds: Option<Bounds>) -> Result<(Self, bool)> {
         let bare = text.trim().trim_start_matches('!').trim_start();
-        let begins = bare.strip_prefix(POLYGON)?.trim_start();
-        begins.starts_with(':').then(|| text.parse())
+        let name = bare.split_once(':').map(|(name, _)| name.trim());
+        let is_other = |name: &str| OTHERS.iter().any(|(other, _)| *other == name);
+        match name {
+            Some(name) if is_other(name) => Self::read(text, bounds),
+            Some(name) if kind(name).is_none() => Err(Error::Invalid(format!(
+                "'{}' is not a shape; use {}",
+                shortened(name),
+                names()
+            ))),
+            _ => {
+                let (shape, at_shares) = Shape::read(text, bounds.as_ref())?;
+                Ok((Self::Shape(shape), at_shares))
+            }
+        }
     }
 
     /// The region that it keeps.
@@ -170,7 +198,7 @@ impl<'a> TextReader<'a> {
             }
             name if kind(name).is_some() => self.shape(),
             name => self.refuse(format!(
-                "'{}' is neither a shape ({}, {POLYGON}) nor all, any or not",
+                "'{}' is neither a shape ({}) nor all, any or not",
                 shortened(name),
                 names()
             )),

@@ -16,12 +16,6 @@ pub(super) fn kind(name: &str) -> Option<&'static Kind> {
     KINDS.iter().copied().find(|kind| kind.name == name)
 }
 
-/// The names of all kinds, for messages.
-pub(super) fn names() -> String {
-    let names: Vec<&str> = KINDS.iter().map(|kind| kind.name).collect();
-    names.join(", ")
-}
-
 impl FromStr for Shape {
     type Err = Error;
 
@@ -47,10 +41,11 @@ impl Shape {
         };
         let name = name.trim();
         let kind = kind(name).ok_or_else(|| {
+            let names: Vec<&str> = KINDS.iter().map(|kind| kind.name).collect();
             Error::Invalid(format!(
                 "'{}' is not a shape; use {}",
                 shortened(name),
-                names()
+                names.join(", ")
             ))
         })?;
         let (numbers, at_shares) = match (bounds, numbers.split_once('=')) {

@@ -7,7 +7,7 @@ use glam::DVec3;
 use rara_base::error::{Error, Result};
 
 use crate::bounds::Bounds;
-use crate::clip::{Expression, Shape};
+use crate::clip::Expression;
 use crate::text_reader::ShapeTree;
 
 /// The bounds of an example of a scene.
@@ -31,11 +31,8 @@ impl Region {
     /// # Errors
     /// [`Error::Invalid`](rara_base::error::Error::Invalid) for other text.
     pub fn shape(text: &str) -> Result<Self> {
-        if let Some(prism) = Expression::prism(text) {
-            return prism.map(Self::Fixed);
-        }
-        let (shape, at_shares) = Shape::read(text, Some(&EXAMPLE))?;
-        Ok(Self::new(text, Expression::Shape(shape), at_shares))
+        let (shape, at_shares) = Expression::read_leaf(text, Some(EXAMPLE))?;
+        Ok(Self::new(text, shape, at_shares))
     }
 }
 

@@ -4,12 +4,9 @@ use std::cell::LazyCell;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use glam::{DVec2, DVec3};
-use rara::clip::{
-    Expression, NamedClip, Prism, PrismBase, Solid, are_alternatives, clips_to_json, load_clips,
-    rings,
-};
-use rara::{Bounds, Clip, ClipOp, Plane, Scene, Shape};
+use glam::DVec3;
+use rara::clip::{Expression, Lasso, NamedClip, are_alternatives, clips_to_json, load_clips};
+use rara::{Bounds, Camera, Clip, ClipOp, Plane, Scene, Shape};
 
 use super::failure::Failure;
 use super::json_kind::{JsonKind, wanted};
@@ -80,38 +77,6 @@ pub struct Regions {
     lassos: Vec<Lasso>,
 }
 
-/// A polygon and its holes in a picture, px, and whether what it holds is kept.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Lasso {
-    rings: Vec<Vec<DVec2>>,
-    keeps: bool,
-}
-
-impl Lasso {
-    pub(super) fn parse(text: &str) -> rara::Result<Self> {
-        let (corners, keeps) = match text.trim().strip_prefix('!') {
-            Some(corners) => (corners, false),
-            None => (text, true),
-        };
-        let rings = rings(corners)?;
-        let lasso = Self { rings, keeps };
-        // What is wrong with it is found before the scene is read.
-        lasso.expression(&|rings| Prism::new(PrismBase::Axis("z".into()), rings, None))?;
-        Ok(lasso)
-    }
-
-    fn expression(
-        &self,
-        made: &dyn Fn(&[Vec<DVec2>]) -> rara::Result<Prism>,
-    ) -> rara::Result<Expression> {
-        let prism = Expression::Prism(made(&self.rings)?);
-        Ok(match self.keeps {
-            true => prism,
-            false => Expression::Not(Box::new(prism)),
-        })
-    }
-}
-
 impl Regions {
     /// The same inside of a shape alone.
     pub(super) fn within(self, shape: Shape) -> Self {
@@ -142,8 +107,9 @@ impl Regions {
         let views = views.in_scene(scene)?;
         for lasso in std::mem::take(&mut self.lassos) {
             let camera = &views[0].camera;
-            let seen = lasso.expression(&|rings| Prism::of_picture(camera, rings));
-            let seen = seen.map_err(|error| Failure::Usage(format!("--lasso: {error}")))?;
+            let seen = lasso
+                .expression(camera)
+                .map_err(|error| Failure::Usage(format!("--lasso: {error}")))?;
             self.all.push(Region::Fixed(seen));
         }
         Ok(Views::Given(views))
@@ -165,15 +131,10 @@ impl Regions {
     /// The clip in an example of a scene, together with other expressions.
     pub(super) fn example(&self, others: Option<Expression>) -> Clip {
         let all = self.all.iter().map(|region| region.example().clone());
-        let base = PrismBase::Eye {
-            eye: DVec3::ZERO,
-            right: DVec3::X,
-            down: DVec3::Y,
-        };
-        let lassos = self.lassos.iter().filter_map(|lasso| {
-            let made = |rings: &[Vec<DVec2>]| Prism::new(base.clone(), rings, None);
-            lasso.expression(&made).ok()
-        });
+        let (eye, up) = (DVec3::NEG_Z, DVec3::NEG_Y);
+        let camera = Camera::look_at(eye, DVec3::ZERO, up, 50.0, (1024, 1024));
+        let lassos =
+            (self.lassos.iter()).filter_map(|lasso| lasso.expression(camera.as_ref().ok()?).ok());
         joined(
             &all.chain(lassos).chain(others).collect::<Vec<_>>(),
             self.op,

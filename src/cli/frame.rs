@@ -3,9 +3,10 @@
 use clap::Args;
 use rara::Settings;
 use rara::camera_files::load_path_settings;
+use rara::clip::Lasso;
 
 use super::camera::CameraArgs;
-use super::clip::{ClipArgs, Lasso, Regions};
+use super::clip::{ClipArgs, Regions};
 use super::failure::Failure;
 use super::output;
 use super::settings::{DeviceArgs, SettingsArgs};
@@ -20,7 +21,7 @@ pub(super) struct FrameArgs {
     /// The clip keeps everything that is seen through the polygon, at every depth; with a leading ! it keeps the rest. Pixels are
     /// counted from the picture's top left corner, and a | begins the corners of a hole. If the command draws several pictures, the
     /// polygon is one of the first picture, and the others show the same part of the scene. --save-clip saves it.
-    #[arg(long, value_name = "CORNERS", value_parser = Lasso::parse, allow_hyphen_values = true, help_heading = "Clip")]
+    #[arg(long, value_name = "CORNERS", value_parser = str::parse::<Lasso>, allow_hyphen_values = true, help_heading = "Clip")]
     lasso: Vec<Lasso>,
     #[command(flatten)]
     pub(super) camera: CameraArgs,

@@ -6,6 +6,7 @@ mod clip_file;
 mod expression;
 #[cfg(feature = "json")]
 mod geojson;
+mod lasso;
 mod outline;
 mod parameter;
 mod placed;
@@ -26,10 +27,9 @@ pub use clip_file::are_alternatives;
 #[cfg(feature = "json")]
 pub use clip_file::{NamedClip, clips_from_json, clips_to_json, load_clips};
 pub use expression::Expression;
+pub use lasso::Lasso;
 pub use parameter::Parameter;
 pub use plane::Plane;
-#[doc(hidden)]
-pub use prism::rings;
 pub use prism::{Prism, PrismBase};
 pub use quadric::Quadric;
 pub use shape::Shape;

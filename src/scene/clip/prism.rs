@@ -4,7 +4,7 @@
 use std::cmp::Ordering;
 use std::fmt;
 
-use glam::{DMat2, DMat3, DQuat, DVec2, DVec3};
+use glam::{DMat3, DQuat, DVec2, DVec3};
 
 use super::{Clip, ClipOp, Plane};
 use crate::axis::Axis;
@@ -18,7 +18,7 @@ use rara_base::error::{Error, Result};
 /// `z=-1..4;0,0;9,0;9,9;0,9|3,3;6,3;6,6`. The corners are (x, y) across z, (x, z) across y and (y, z) across x, world units. The axis
 /// may be any direction, as `0,0.6,0.8`: its corners are those across the nearest axis, turned with it the shortest way.
 ///
-/// A prism may also be the cone of all lines of sight through a polygon in a picture: see [`of_picture`](Self::of_picture).
+/// A prism may also be the cone of all lines of sight through a polygon in a picture: see [`Lasso`](super::Lasso).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Prism {
     base: PrismBase,
@@ -99,6 +99,11 @@ impl PrismBase {
                 }
                 (*right, *down, along, Some(*eye))
             }
+
+    /// The axes of the corners' numbers.
+    pub(super) fn across(&self) -> Result<[DVec3; 2]> {
+        self.frame().map(|frame| [frame.u, frame.v])
+    }
         };
         Ok(Frame { u, v, along, eye })
     }
@@ -171,45 +176,6 @@ impl Prism {
             heights,
             clip,
         })
-    }
-
-    /// Makes the region that a polygon drawn in a camera's picture holds, as by a lasso: the cone of all lines of sight through it, or
-    /// a prism along the view axis of an orthographic camera. The corners are in pixels from the picture's top left corner, of which
-    /// the first pixel's centre is (0.5, 0.5).
-    ///
-    /// # Errors
-    /// The errors of [`new`](Self::new).
-    pub fn of_picture(camera: &Camera, rings: &[Vec<DVec2>]) -> Result<Self> {
-        let (focal, centre) = (
-            DVec2::new(camera.fx, camera.fy),
-            DVec2::new(camera.cx, camera.cy),
-        );
-        let [right, down, forward] = [0, 1, 2].map(|row| camera.rotation.row(row));
-        let mapped = |map: &dyn Fn(DVec2) -> DVec2| {
-            let corner = |pixel: &DVec2| map((pixel - centre) / focal);
-            let ring = |ring: &Vec<DVec2>| ring.iter().map(corner).collect();
-            rings.iter().map(ring).collect::<Vec<Vec<DVec2>>>()
-        };
-        if camera.projection == Projection::Perspective {
-            // Of a mirrored picture the corners are mirrored instead.
-            let sign = right.cross(down).dot(forward).signum();
-            let rings = mapped(&|corner| DVec2::new(sign * corner.x, corner.y));
-            let base = PrismBase::Eye {
-                eye: camera.eye,
-                right: sign * right,
-                down,
-            };
-            return Self::new(base, &rings, None);
-        }
-        let base = PrismBase::Direction(forward);
-        let frame = base.frame()?;
-        // The numbers of the scene's space, in the axes of the direction.
-        let turn = DMat2::from_cols(
-            DVec2::new(right.dot(frame.u), right.dot(frame.v)),
-            DVec2::new(down.dot(frame.u), down.dot(frame.v)),
-        );
-        let eye = DVec2::new(camera.eye.dot(frame.u), camera.eye.dot(frame.v));
-        Self::new(base, &mapped(&|corner| eye + turn * corner), None)
     }
 
     /// The region that it keeps.
@@ -344,27 +310,7 @@ impl Prism {
     /// Reads the text that follows `polygon:`.
     pub(super) fn read(text: &str) -> Result<Self> {
         let (base, heights, corners) = head(text)?;
-        Self::new(base, &rings(corners)?, heights)
-    }
-}
-
-/// Reads a polygon and its holes: corners as `0,0;2,0;2,1`, with a `|` before those of each hole.
-///
-/// # Errors
-/// [`Error::Invalid`] for a corner that is not two numbers.
-pub fn rings(text: &str) -> Result<Vec<Vec<DVec2>>> {
-    let corner = |text: &str| {
-        let pair = text.split_once(',').ok_or_else(|| {
-            Error::Invalid(format!(
-                "'{text}' is not a corner; give two numbers with a comma between them, and a ; between corners"
-            ))
-        })?;
-        Ok(DVec2::new(number(pair.0)?, number(pair.1)?))
-    };
-    let ring = |text: &str| text.split(';').map(corner).collect::<Result<Vec<_>>>();
-    match text.trim() {
-        "" => Ok(Vec::new()),
-        all => all.split('|').map(ring).collect(),
+        Self::new(base, &super::lasso::rings(corners)?, heights)
     }
 }
 
@@ -567,7 +513,7 @@ fn ends(ring: &[DVec2], edge: usize) -> [DVec2; 2] {
 }
 
 /// True when a point is inside of a ring.
-fn winds_around(ring: &[DVec2], point: DVec2) -> bool {
+pub(super) fn winds_around(ring: &[DVec2], point: DVec2) -> bool {
     let crosses = |edge: &usize| {
         let [a, b] = ends(ring, *edge);
         let is_between = (a.y > point.y) != (b.y > point.y);

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use glam::{DVec2, DVec3};
-use rara::clip::{numbers_of, rings};
+use rara::clip::{Lasso, numbers_of};
 use rara::{Mode, Plane, Projection, Shape};
 
 use super::viewpoint::Walk;
@@ -52,7 +52,7 @@ pub enum Action {
     /// Keep of what the edited clip keeps what the outline that was drawn holds, or what it does not hold.
     Drawn(bool),
     /// The same of a polygon and its holes, px.
-    Lasso(Vec<Vec<DVec2>>, bool),
+    Lasso(Lasso),
     /// Show a layer or hide it; whichever it is not where that is not said.
     Layer(Which, Option<bool>),
     /// Draw a layer with this share of its opacity, 0 to 1; the next is 100, 50, 25 or 10 %.
@@ -231,14 +231,10 @@ impl FromStr for Action {
             "up" => Self::Up(direction(rest).map_err(|error| {
                 format!("up {rest}: {error}; x, -x, y, -y, z, -z or X,Y,Z is possible")
             })?),
-            "lasso" => {
-                let (corners, keeps) = match rest.strip_prefix('!') {
-                    Some(corners) => (corners, false),
-                    None => (rest, true),
-                };
-                let rings = rings(corners).map_err(|error| error.to_string())?;
-                Self::Lasso(rings, keeps)
-            }
+            "lasso" => Self::Lasso(
+                rest.parse()
+                    .map_err(|error| format!("lasso {rest}: {error}"))?,
+            ),
             "clip" if rest == "next" => Self::NextClip,
             "clip" => return Err(format!("clip {rest}: next is possible")),
             "plane" | "shape" => Self::Held(held(verb, rest)?),

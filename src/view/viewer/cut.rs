@@ -1,7 +1,7 @@
 //! A clip that is shown, and the one of its shapes that is held: a prism is one of them here.
 
-use glam::{DVec2, DVec3};
-use rara::clip::{Expression, Prism};
+use glam::DVec3;
+use rara::clip::{Expression, Lasso};
 use rara::{Camera, Clip, ClipOp, Placement, Plane, Shape};
 
 use super::numbers::stands_at;
@@ -187,20 +187,12 @@ impl ClipEditor {
         }
     }
 
-    /// Keeps of what is kept what a polygon in a camera's picture holds, px, or what it does not hold.
+    /// Keeps of what is kept what a lasso keeps in a camera's picture.
     ///
     /// # Errors
-    /// The errors of [`Prism::of_picture`].
-    pub(super) fn lasso(
-        &mut self,
-        camera: &Camera,
-        (rings, keeps): (&[Vec<DVec2>], bool),
-    ) -> rara::Result<()> {
-        let prism = Expression::Prism(Prism::of_picture(camera, rings)?);
-        let added = match keeps {
-            true => prism,
-            false => Expression::Not(Box::new(prism)),
-        };
+    /// The errors of [`Lasso::expression`].
+    pub(super) fn lasso(&mut self, camera: &Camera, lasso: &Lasso) -> rara::Result<()> {
+        let added = lasso.expression(camera)?;
         if !self.on {
             self.expressions.clear();
         } else if self.op == ClipOp::Or && self.expressions.len() > 1 {

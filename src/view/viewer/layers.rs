@@ -3,14 +3,14 @@
 use std::mem::{Discriminant, discriminant};
 use std::time::{Duration, Instant};
 
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 use rara::{Camera, Clip, ClipOp, Layer, LayerState, Scene};
 
 use super::action::{Edit, GripAction, Step, Which};
 use super::cut::ClipEditor;
 use super::failure::Failure;
 use crate::Windowed;
-use rara::clip::Expression;
+use rara::clip::{Expression, Lasso};
 use rara::scene::layers::{LayerClip, ListedState, LoadedLayer, SceneLayers, Tint};
 use rara_shots::{Face, faces};
 
@@ -241,17 +241,13 @@ impl Clips {
         self.changing().act(action, camera, radius);
     }
 
-    /// Keeps of what the edited clip keeps what a polygon in a camera's picture holds, px, or what it does not hold.
+    /// Keeps of what the edited clip keeps what a lasso keeps in a camera's picture.
     ///
     /// # Errors
-    /// [`Failure::Asked`] where there is no such polygon, as one that crosses itself.
-    pub(super) fn lasso(
-        &mut self,
-        camera: &Camera,
-        outline: (&[Vec<DVec2>], bool),
-    ) -> Result<(), Failure> {
+    /// [`Failure::Asked`] where its numbers overflow.
+    pub(super) fn lasso(&mut self, camera: &Camera, lasso: &Lasso) -> Result<(), Failure> {
         self.remember(None);
-        let done = self.changing().lasso(camera, outline);
+        let done = self.changing().lasso(camera, lasso);
         done.map_err(|error| Failure::Asked(error.to_string()))
     }
 

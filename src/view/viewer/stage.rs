@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use glam::{DVec2, DVec3};
-use rara::clip::NamedClip;
+use rara::clip::{Lasso, NamedClip};
 use rara::{Camera, Clip, Picture, Settings};
 use winit::dpi::PhysicalSize;
 use winit::event_loop::EventLoopProxy;
@@ -242,12 +242,14 @@ impl Viewer {
                 let outline = lasso::simplified(&std::mem::take(&mut self.drawn));
                 self.dirty = true;
                 if outline.len() > 2 {
-                    return self.act(Action::Lasso(vec![outline], keeps));
+                    let drawn = Lasso::new(vec![outline], keeps);
+                    let drawn = drawn.map_err(|error| Failure::Asked(error.to_string()))?;
+                    return self.act(Action::Lasso(drawn));
                 }
             }
-            Action::Lasso(rings, keeps) => {
+            Action::Lasso(drawn) => {
                 let camera = self.viewpoint.camera(self.picture_size());
-                self.scenery.clips.lasso(&camera, (&rings, keeps))?;
+                self.scenery.clips.lasso(&camera, &drawn)?;
             }
             Action::Layer(which, visible) => self.scenery.clips.show(&which, visible)?,
             Action::LayerOpacity(which, opacity) => {

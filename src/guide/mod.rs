@@ -28,7 +28,7 @@ chapters! {
     building,
     c shows "mesh",
     changes,
-    command_line shows "section",
+    command_line shows "section" "sheet",
     embedding shows "linear" "stored",
     formats,
     frame,

@@ -32,10 +32,13 @@ pub struct ClipArgs {
     clip_expr: Vec<Region>,
     /// Take clips from a JSON file (repeatable)
     ///
-    /// The file is a list. Each element is a plane, such as {"normal":[x,y,z],"d":d}, or an expression as a tree, such as
-    /// {"clip":{"all":[...]}}, and may have a "name". --save-clip writes such a file. FILE:NAME takes the clips with this name,
-    /// or the clip with this number (from 0), and FILE:* takes all clips. If several clips have names, :NAME or :* is needed.
-    /// An element with "layer" cuts only this layer. Such elements are taken in any case, unless NAME is the name of one of them.
+    /// The file is a list of clips. Each element is a plane, such as {"normal":[x,y,z],"d":d}, or a tree of shapes, such as
+    /// {"clip":{"all":[...]}}. An element may have a "name". An element with a "layer" cuts only the layer of this name.
+    /// --save-clip writes such files.
+    ///
+    /// FILE:NAME takes the clips with this name, or the clip with this number, which counts from 0. FILE:* takes all clips. FILE
+    /// alone takes all clips if there is only one or if they have no names; otherwise, rara asks for a name. Clips of single layers
+    /// do not count here. They are always taken, unless NAME is the name of one of them: then only this one is taken.
     #[arg(long, value_name = "FILE[:NAME]")]
     clip_file: Vec<String>,
     /// Write the clip to a JSON file for --clip-file

@@ -45,8 +45,8 @@ pub(super) struct Convert {
     min_opacity: Option<f32>,
     /// Leave out floaters: Gaussians in clusters of fewer than N
     ///
-    /// Gaussians of a layer that a chain of touching Gaussians connects are a cluster. Two Gaussians touch if their ellipsoids of
-    /// two standard deviations do. Gaussians that --clip or --min-opacity removes do not connect others. To see the floaters
+    /// Gaussians of a layer that touch each other, also through a chain of others, are a cluster. Two Gaussians touch if their
+    /// ellipsoids of two standard deviations do. Gaussians that --clip or --min-opacity removes do not connect others. To see the floaters
     /// first, draw the scene with --select 'floaters=cluster_size<N'.
     #[arg(long, value_name = "N")]
     min_cluster: Option<u32>,

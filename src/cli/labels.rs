@@ -27,12 +27,12 @@ rara_base::named! {
 pub(super) struct LabelArgs {
     /// Draw a scale bar whose length is a round number; --scale-bar=mm names the unit
     ///
-    /// The number at the bar is in world units. For sections and for cameras without perspective.
+    /// The number at the bar is in world units. The bar needs a section or a camera without perspective.
     #[arg(long, value_name = "UNIT", num_args = 0..=1, require_equals = true, default_missing_value = "")]
     scale_bar: Option<String>,
     /// Label the edges of the picture with directions
     ///
-    /// For sections and for cameras without perspective.
+    /// The letters need a section or a camera without perspective.
     #[arg(long, value_name = "SYSTEM", value_parser = values::named::<Letters>())]
     letters: Option<Letters>,
 }

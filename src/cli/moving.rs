@@ -16,10 +16,14 @@ use super::failure::Failure;
 /// Where a region moves.
 #[derive(Debug, Args)]
 pub(super) struct MovingArgs {
-    /// The clip of the first frame, an expression as for --clip-expr
+    /// The clip of the first picture, an expression as for --clip-expr
+    ///
+    /// --from and --to are given together. rara then draws a series of pictures, in which the clip of --from changes into that of
+    /// --to in equal steps. --frames is the number of pictures. rara render also needs --path, which moves the camera; rara sweep
+    /// does not.
     #[arg(long, value_name = "EXPRESSION", value_parser = str::parse::<Region>, allow_hyphen_values = true)]
     from: Option<Region>,
-    /// The clip of the last frame; it has the same kinds of shapes in the same order as --from
+    /// The clip of the last picture; it has the same kinds of shapes in the same order as --from
     ///
     /// Points, sizes and radii are interpolated linearly, and rotations and normals along the shortest arcs.
     #[arg(long, value_name = "EXPRESSION", value_parser = str::parse::<Region>, allow_hyphen_values = true)]

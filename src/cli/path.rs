@@ -27,9 +27,9 @@ pub(super) struct PathArgs {
     /// --path cameras has one for each camera.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     frames: Option<u32>,
-    /// Begin the movement slowly (in), end it slowly (out), or both
+    /// Let the movement begin slowly (in), end slowly (out), or both
     ///
-    /// It holds for the camera and for a clip that moves.
+    /// The movement is that of the camera along --path, and that of a clip.
     #[arg(long, value_name = "HOW", value_parser = values::named::<Ease>(), default_value_t)]
     ease: Ease,
 }

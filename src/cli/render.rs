@@ -68,9 +68,9 @@ pub(super) struct Render {
     #[arg(short, long, value_name = "OUT", value_parser = film::pictures_file())]
     #[arg(required_unless_present_any = ["json", "json_lines"])]
     output: Option<PathBuf>,
-    /// Extra channels, added to an .exr, or in separate files beside a .png (16 bits) or .npy
+    /// Extra channels, added to an .exr, or in separate files next to a .png (16 bits) or .npy
     ///
-    /// Beside a.png the files are a.depth.png, a.normal.png and so on. A 16-bit .png stores depths in thousandths of a world
+    /// Next to a.png, the files are a.depth.png, a.normal.png and so on. A 16-bit .png stores depths in thousandths of a world
     /// unit, normals from -1 to 1, weights from 0 to 1, counts as whole numbers, and layers as numbers from 1. The channels
     /// are drawn separately, and the reported times leave them out.
     #[arg(long, value_name = "LIST", value_parser = values::named::<Aov>(), value_delimiter = ',')]

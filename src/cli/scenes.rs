@@ -40,9 +40,10 @@ pub struct SceneArgs {
     /// Move splats that match PREDICATE to a layer NAME (repeatable)
     ///
     /// PREDICATE compares a number of each splat by <, <=, >, >=, = or !=, as in opacity>0.5. The number may be opacity (from
-    /// 0 to 1), size (the largest standard deviation), cluster_size (the
-    /// number of splats in its cluster, which are connected by a chain of touching splats), red, green or blue (the colour of degree 0, where 1 is full), or a
-    /// property of the file by its name. If this name is also a word of predicates, such as size, write property(NAME).
+    /// 0 to 1), size (the largest standard deviation), red, green or blue (the colour of degree 0, where 1 is full), cluster_size,
+    /// or a property of the file by its name. Splats that touch each other, also through a chain of other splats, are a cluster,
+    /// and cluster_size is the number of splats in it. If a property of the file has the same name as one of these words, such as
+    /// size, write property(size) for the property.
     ///
     /// 'label in 3,4,7..9' is true if the number is in the list; 7..9 includes 7, 9 and everything between.
     /// 'inside(sphere:0,0,0,1)' is true if the centre is inside the shape; any expression for --clip-expr may stand there.
@@ -55,9 +56,10 @@ pub struct SceneArgs {
     select: Vec<String>,
     /// Cut one layer by its own clip, not by --clip (repeatable)
     ///
-    /// EXPRESSION is written as for --clip-expr. It replaces the clip that --clip and the other clip flags make. The plane of
-    /// a --section cuts the layer too. With NAME=whole, only --clip-near and --clip-far cut the layer. NAME=frame removes the
-    /// clip that a list of layers gives the layer, so that --clip cuts it.
+    /// EXPRESSION is written as for --clip-expr. For this layer, it replaces the clip that --clip and the other clip flags make.
+    /// The plane of a --section cuts the layer too. The words whole and frame may stand in place of EXPRESSION. With NAME=whole,
+    /// only --clip-near and --clip-far cut the layer. With NAME=frame, --clip and the other clip flags cut the layer, even if a
+    /// list of layers gives it a clip of its own.
     #[arg(long, value_name = "NAME=EXPRESSION")]
     layer_clip: Vec<String>,
     /// Multiply the opacities of one layer by a share, as in skin=40% (repeatable)
@@ -67,7 +69,8 @@ pub struct SceneArgs {
     layer_opacity: Vec<String>,
     /// Mix a colour into one layer, as in bone=gold or bone=#ffe0c0:30% (repeatable)
     ///
-    /// A share behind a colon, from 0 to 1 or from 0% to 100%, says how much of the colour there is; by default half.
+    /// COLOUR:SHARE says how much of the colour is mixed in: SHARE is from 0 to 1, or from 0% to 100%. COLOUR alone is mixed in by
+    /// half.
     #[arg(long, value_name = "NAME=COLOUR")]
     layer_tint: Vec<String>,
     /// Read opacities or scales of a .ply as plain values, not as logits or logarithms

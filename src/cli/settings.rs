@@ -91,7 +91,7 @@ impl<const CUTS: bool> Args for SettingsArgs<CUTS> {
     fn augment_args(command: Command) -> Command {
         let usual = Settings::default();
         let own = Self::fields().map(|setting| arg(setting, "Drawing", setting.text(&usual)));
-        let about = "Set all of the precision flags below; each of them overrides the preset.\n\n\
+        let about = "Set all precision flags below at once; a flag that is also given keeps its own value.\n\n\
                      The guide (src/guide/modes.md) says what each preset costs and how exact it is.";
         let preset = described("preset", "Precision", about)
             .value_name("PRESET")

@@ -30,10 +30,11 @@ pub(super) struct SliceArgs {
     /// opaque, and fainter ones fade away.
     #[arg(long)]
     opaque: bool,
-    /// Draw a line around the cut surface, or with NAME= around that of a layer (repeatable)
+    /// Draw a line around the cut surface of all layers, or of layer NAME (repeatable)
     ///
-    /// Without --section, the line goes around each face that planes, slabs and boxes have cut and that the camera sees. Give
-    /// several layers lines of their own by --outline skin=red --outline bone=white.
+    /// COLOUR draws one line around the cut surface of all layers together. NAME=COLOUR draws a line around the cut surface of the
+    /// layer with this name: --outline skin=red --outline bone=white draws two lines. Without --section, lines go around each face
+    /// that planes, slabs and boxes have cut and that the camera sees.
     #[arg(long, value_name = "[NAME=]COLOUR", value_parser = outline)]
     outline: Vec<Outline>,
     /// Width of the line of --outline, pixels

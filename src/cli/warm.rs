@@ -19,9 +19,8 @@ Examples:
   RARA_CACHE=/var/cache/rara rara warm --all
 
 The command compiles the shaders of the default mode for four kinds of pictures: without a clip, cut by a plane, cut by a
-curved shape, and cut by several shapes. It also compiles the shaders of the channels of --aov. What is
-compiled is kept in the folder that the environment variable RARA_CACHE names, or in folders of rara and of the driver in the
-user's cache.")]
+curved shape, and cut by several shapes. It also compiles the shaders of the channels of --aov. It stores the compiled shaders
+in the folder that the environment variable RARA_CACHE names, or in folders of rara and of the driver in the user's cache.")]
 pub(super) struct Warm {
     /// Also compile the shaders of all other modes, --raster paths and --sh-format choices
     #[arg(long)]

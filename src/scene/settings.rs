@@ -27,9 +27,9 @@ named! {
     /// How the weight w of a cut splat changes its alpha.
     #[derive(Debug, Clone, Copy, PartialEq, Eq)]
     pub enum Decay {
-        /// Scale alpha: `alpha' = alpha w` (the paper).
+        /// The splat's alpha becomes alpha * w, as in the RaRa Clipper paper.
         Linear = "linear",
-        /// Scale the optical depth: `alpha' = 1 - (1 - alpha)^w`. The two halves of a cut splat together give the whole splat.
+        /// The splat's alpha becomes 1 - (1 - alpha)^w. The two halves of a cut splat together then give the whole splat.
         Depth = "depth",
     }
 }
@@ -38,12 +38,12 @@ named! {
     /// [`Mode::Rara`] only: what a cutoff splat keeps in a pixel whose ray misses the traced ellipsoid.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
     pub enum Miss {
-        /// The splat keeps everything (the paper's text).
+        /// The whole splat stays, as in the text of the RaRa Clipper paper.
         Keep = "keep",
-        /// The splat keeps nothing (the paper's released code).
+        /// Nothing of the splat stays, as in the code that was released with the paper.
         Drop = "drop",
-        /// The splat keeps everything if the clip keeps the point of the ray at which the splat is densest, and nothing otherwise.
-        /// This is the limit of the ratio at the edge of the ellipsoid.
+        /// The whole splat stays if the clip keeps the point of the ray at which the splat is densest; otherwise nothing of it stays.
+        /// At the edge of the ellipsoid, the visible share has the same limit.
         #[default]
         Peak = "peak",
     }
@@ -124,14 +124,17 @@ settings! {
     pub struct Settings {
         /// How Gaussians that the clip cuts are drawn.
         pub mode: Mode as "mode"(Cut, "MODE"),
-        /// Whether the visible share w of a cut splat scales its alpha or its optical depth.
+        /// Scale the alpha (linear) or the optical depth (depth) of a cut splat by its weight.
         ///
-        /// linear makes alpha w times alpha. depth makes it 1 - (1 - alpha)^w, so that the two halves of a cut splat together give the
-        /// whole splat. The default is linear for mode rara, and depth for mode exact.
+        /// The weight w of a cut splat is the share of it that the clip keeps in a pixel. If this is not given, mode rara uses linear,
+        /// and mode exact uses depth.
         pub decay: Option<Decay> as "decay"(Cut, "LAW"),
-        /// Mode rara: the traced ellipsoid's radius, in deviations.
+        /// Mode rara: the radius of a splat's ellipsoid, in standard deviations.
         pub sigma: f32 as "sigma"(Cut, "K", |x| *x > 0.0 && x.is_finite(), "a finite number above zero"),
-        /// Mode rara: what a cut splat keeps in a pixel whose ray misses the ellipsoid.
+        /// Mode rara: how much of a cut splat stays in a pixel whose ray misses its ellipsoid.
+        ///
+        /// Mode rara draws the visible share of the ray's length inside the ellipsoid. A splat also covers pixels around its
+        /// ellipsoid, in which this length is zero and has no share.
         pub miss: Miss as "miss"(Cut, "WHAT"),
         /// For ablation studies: treat every Gaussian as if the clip cut it.
         pub trace_all: bool as "trace-all"(Cut, ""),
@@ -142,13 +145,13 @@ settings! {
         /// The colour is three numbers from 0 to 1, as in 1,0.5,0, or #rrggbb, or a name that CSS has for it, such as white or
         /// orange. green is 0,1,0 and grey is 0.5,0.5,0.5.
         pub background: Option<[f32; 3]> as "background"(Look, "COLOUR"),
-        /// The highest degree of spherical harmonics; if not given, the scene's.
+        /// The highest degree of spherical harmonics that is drawn; by default, that of the scene.
         pub sh_degree: Option<u32> as "sh-degree"(Look, "N", |n| *n <= Some(3), "a number from 0 to 3"),
         /// How splats are rasterised; all choices draw the same picture.
         pub raster: Raster as "raster"(Look, "HOW"),
         /// What pixels show: colours, clip weights, counts or mean colours.
         pub show: Show as "show"(Look, "WHAT"),
-        /// The order in which splats are blended; if not given, the scene's.
+        /// The order in which splats are blended; by default, that of the scene.
         ///
         /// glTF scenes ask for distance, and all others for depth, as in 3DGS, unless their files say otherwise. If the visible layers
         /// ask for different orders, depth is used.

@@ -4,14 +4,14 @@ rara_base::named! {
     /// How a movement begins and ends.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
     pub enum Ease {
-        /// The pace is even.
+        /// The speed is the same all the time.
         #[default]
         None = "none",
-        /// It begins slowly.
+        /// The movement begins slowly.
         In = "in",
-        /// It ends slowly.
+        /// The movement ends slowly.
         Out = "out",
-        /// It begins and ends slowly.
+        /// The movement begins and ends slowly.
         Both = "both",
     }
 }

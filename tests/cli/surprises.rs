@@ -275,7 +275,12 @@ fn help_has_commands_and_topics() {
     let help = |of: &[&str]| stdout(&done(rara([&["help"], of].concat())));
     assert!(help(&[]).contains("render") && help(&["render"]).contains("--aov <LIST>"));
     let whole = stdout(&done(rara(["render", "--help"])));
-    assert!(whole.contains("ellipsoid:cx") && whole.contains("Beside a.png the files are"));
+    assert!(whole.contains("ellipsoid:cx") && whole.contains("Next to a.png, the files are"));
+    // Each shape has a line of its own.
+    for shape in ["plane:nx", "box:cx", "cone:ax", "polygon:AXIS"] {
+        let begins = |line: &str| line.trim_start().starts_with(shape);
+        assert!(whole.lines().any(begins), "{shape}");
+    }
     let clip = help(&["clip"]);
     assert!(
         clip.contains("ellipsoid:cx") && clip.contains("--clip-op"),

@@ -97,7 +97,7 @@ const NEEDS: &[(&str, Need)] = &[
     ("leave", Value("mode", &["exact", "rara"])),
 ];
 
-/// Refuses flags of a command that have no effect beside what else was typed, or says so.
+/// Refuses flags of a command that have no effect together with what else was typed, or says so.
 pub(super) fn check(command: &Command, typed: &ArgMatches) -> Result<(), Failure> {
     for (flag, need) in NEEDS {
         let is_typed =

@@ -62,7 +62,7 @@ The view:
   zoom STEPS                       moves nearer, steps of the mouse wheel
   move X,Y,Z                       moves right, down and forward, world units
   camera orbit, fly                chooses how the mouse moves the camera
-  camera perspective, orthographic
+  camera perspective, orthographic chooses the projection
   camera reset, next               goes back to the first camera, or takes the next one of the file
   up x, -x, y, -y, z, -z, X,Y,Z    makes this direction up in the picture
 The clip:
@@ -70,7 +70,7 @@ The clip:
   shape flip                       keeps the other side of the held shape
   shape next                       takes hold of the next shape of the edited clip
   shape SHAPE                      replaces the held shape, as in shape sphere:0,0,0,1
-  shape plane, box, sphere         puts one where the held shape is
+  shape plane, box, sphere         puts this shape where the held shape is
   shape x, y, z                    turns the held shape to an axis
   shape +0.1, -0.1                 moves the held shape along its normal, world units
   plane NX,NY,NZ,D                 replaces the held shape by a plane
@@ -80,14 +80,14 @@ The clip:
   edit frame, N|NAME, next         edits the clip of all layers, or a layer's own
   edit release                     removes the edited layer's own clip
   clip next                        takes the next clip of a dropped file
-  lasso X,Y;X,Y;...                keeps what is seen in this polygon, pixels; with a leading ! the rest
+  lasso X,Y;X,Y;...                keeps what this polygon holds, pixels; with a leading ! the rest
   undo                             takes back the last change of a clip
 Layers:
   layer N|NAME on, off             shows or hides a layer
   layer N|NAME 40%                 draws it with this share of its opacity
   layer N|NAME tint COLOUR|none    mixes a colour into it
 The window:
-  mode none, hard, rara, exact
+  mode none, hard, rara, exact     chooses how cut splats are drawn
   outline, slice, edge, rim on|off marks shapes and cut faces, as the keys B, 7, 8 and 9 do
   keys, numbers on|off             shows the list of keys, or the clip's numbers
   screenshot [FILE]                writes a screenshot

@@ -45,13 +45,13 @@ use rara_base::error::{Error, Result};
 use rara_base::named;
 
 named! {
-    /// How several surfaces combine.
+    /// How several shapes or surfaces combine.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
     pub enum ClipOp {
-        /// A point is visible if every surface keeps it (an intersection).
+        /// A point is visible if all of them keep it (an intersection).
         #[default]
         And = "and",
-        /// A point is visible if at least one surface keeps it (a union).
+        /// A point is visible if at least one of them keeps it (a union).
         Or = "or",
     }
 }

@@ -24,20 +24,24 @@ Keys:
   W A S D Q E                  forward, left, back, right, down, up (Shift: slowly)
   G                            take hold of the next shape
   arrows                       turn the view; with Shift the held shape
-  + -, O                       nearer, farther; orthographic, or in perspective
-  Shift+X, Y, Z                make that axis up; once more, down
+  +, -                         nearer, farther
+  O                            orthographic, or in perspective
+  Shift+X, Shift+Y, Shift+Z    let this axis point up in the picture; once more, down
   R, N                         back to the start; the next camera of --view all
   0 1 2 3                      mode none, hard, rara, exact
   P, I                         turn the clip on or off; keep the other side of the held shape
-  X Y Z                        align the held shape with an axis; put a plane across it, mid-scene
+  X, Y, Z                      turn the held shape to this axis; a plane also moves to mid-scene
   Page Up, Page Down           move the held shape along its normal or from the eye (Shift: a tenth)
   J K                          make the held shape smaller or larger
   4 5 6                        put a plane, a box or a sphere in the held shape's place
-  7 8 9                        slice on the held face, line around cut faces, tint along them
+  7                            show or hide a slice: the colours on the held shape's cut faces
+  8                            show or hide a line around each cut face
+  9                            show or hide a tint along the edge of each cut face
   Backspace or Ctrl+Z          take back the last change of a clip
   B                            outlines of the shapes on or off
   F1 to F9                     layer 1 to 9 on or off (Shift: its opacity; Ctrl: its tint)
-  L, U                         L: edit the own clip of the next layer, or that of all; U: remove it
+  L                            edit the next layer's own clip; after the last, the clip of all
+  U                            remove the edited layer's own clip
   M                            show or hide the mode and the clip's numbers
   C or F12                     screenshot
   F                            print the flags that draw this picture on the terminal

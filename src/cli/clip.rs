@@ -318,7 +318,7 @@ fn from_file(text: &str) -> Result<Vec<NamedClip>, Failure> {
             let of_all = clips.iter().filter(|named| named.layer.is_none());
             let names: Vec<_> = of_all.map(|named| named.name.as_str()).collect();
             return Err(Failure::Usage(format!(
-                "--clip-file {text}: {} has {}; say which, as in {}:{}, or {}:{ALL} for all of them together",
+                "--clip-file {text}: {} has {}; give one of them, as in {}:{}, or all of them together by {}:{ALL}",
                 path.display(),
                 listed(&names),
                 path.display(),

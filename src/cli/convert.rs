@@ -118,9 +118,10 @@ impl ConvertJson {
         }
         if self.written == 0 && self.gaussians > 0 {
             say(format_args!(
-                "warning: nothing is left of {}, and {} is a scene without Gaussians; rara info prints the scene's bounds",
-                counted(self.gaussians as u64, "Gaussian"),
-                self.file.display()
+                "warning: {} is empty, because the flags leave out all {}; rara info prints the bounds of the scene, for a clip that \
+                 keeps some of them",
+                self.file.display(),
+                counted(self.gaussians as u64, "Gaussian")
             ));
         }
         say(format_args!(

@@ -158,7 +158,7 @@ impl Help {
         known.extend(all_topics(&command));
         let meant = super::values::meant(&of, known.iter().map(String::as_str));
         Err(Failure::Usage(format!(
-            "help {of}: there is no such command or topic; there are {}{meant}; {beside}",
+            "help {of}: this is neither a command nor a topic; there are {}{meant}; {beside}",
             known.join(", ")
         )))
     }

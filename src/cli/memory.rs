@@ -77,7 +77,7 @@ fn check(bytes: u64, what: impl Fn() -> String, remedy: &str) -> Result<()> {
     };
     let (what, mebibytes) = (what(), bytes.div_ceil(1 << 20));
     Err(Error::Memory(format!(
-        "there is no memory for {what}: about {mebibytes} MiB, {there}; {remedy}"
+        "there is not enough memory for {what}: this takes about {mebibytes} MiB, {there}; {remedy}"
     )))
 }
 

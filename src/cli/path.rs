@@ -59,7 +59,7 @@ fn route(text: &str) -> Result<Route, String> {
     let mut views: Vec<String> = listed.into_iter().flatten().collect();
     if views.iter().any(String::is_empty) {
         return Err(format!(
-            "nothing stands between two commas or behind the colon of '{text}'"
+            "the list of cameras in '{text}' has an empty place: write a camera between two commas and after the colon"
         ));
     }
     match kind {

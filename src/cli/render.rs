@@ -276,7 +276,8 @@ impl Render {
         let panorama = self.panorama.meant(self.frame.camera.size())?;
         if panorama.is_some() && self.changes_pictures() {
             return Err(Failure::Usage(
-                "--outline, --rim, --scale-bar and --letters mark what one picture shows, and --panorama is made of six: leave out one of them".into(),
+                "--outline, --rim, --scale-bar and --letters cannot mark a --panorama, which is made of six pictures: leave out these flags \
+                 or --panorama".into(),
             ));
         }
         if let Some(panorama) = &panorama {
@@ -310,7 +311,7 @@ impl Render {
                 }
                 if panorama.is_some() && matches!(views, Views::Framed { .. }) {
                     return Err(Failure::Usage(
-                        "--panorama is what is seen from one place: say which by --eye, --camera or --cameras".into(),
+                        "--panorama draws what is seen from one point: give the point by --eye, --camera or --cameras".into(),
                     ));
                 }
                 Pictures::Views(views, clip, moving.map(Box::new))

@@ -83,7 +83,7 @@ impl SliceArgs {
             return Ok(());
         }
         Err(Failure::Usage(format!(
-            "--slice is made by tiles alone, and --raster {raster} draws none: leave out one of them"
+            "--slice needs --raster tiles or auto, and not {raster}: leave out --slice or --raster"
         )))
     }
 
@@ -125,8 +125,8 @@ impl SliceArgs {
 pub(super) fn faces(clip: &Clip, camera: &Camera) -> Result<Vec<Face>, Failure> {
     rara_shots::faces(clip, camera).ok_or_else(|| {
         Failure::Usage(
-            "--outline and --rim mark the faces that planes, slabs and boxes cut together: leave out other shapes and --clip-op or, \
-             or look at a --section"
+            "--outline and --rim can mark the cut faces of planes, slabs and boxes only, and only if the clip keeps what is inside \
+             all of them: leave out other shapes and --clip-op or, or give a --section, whose cut surface they mark with any clip"
                 .into(),
         )
     })

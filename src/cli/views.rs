@@ -165,8 +165,8 @@ fn outside(counted: &Outside) -> Option<String> {
     };
     (outside > 0).then(|| {
         format!(
-            "note: {share} of the visible Gaussians, {} of {}, reach out of the picture, as strays and backgrounds do that would make \
-             the rest small; --eye or --ortho HEIGHT shows more",
+            "note: {share} of the visible Gaussians, {} of {}, reach out of the picture; the camera leaves out strays and backgrounds, \
+             which would make everything else small; --eye or --ortho HEIGHT shows more",
             grouped(outside),
             grouped(visible)
         )

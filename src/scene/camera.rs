@@ -220,7 +220,7 @@ impl Camera {
             && near >= far
         {
             return Err(Error::Invalid(format!(
-                "nothing lies between a near plane at a depth of {near} and a far plane at {far}; give a far plane behind the near one"
+                "the near plane is at a depth of {near} and the far plane at {far}, so that both together cut away everything; give a far plane behind the near one"
             )));
         }
         let forward = self.rotation.transpose() * DVec3::Z;

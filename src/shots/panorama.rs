@@ -74,7 +74,8 @@ impl Panorama {
         let most = Camera::MAX_SIZE;
         if u64::from(width) != 2 * u64::from(height) || height == 0 || width > most {
             return Err(Error::Invalid(format!(
-                "a panorama of {width}x{height} is not possible: it is twice as wide as high, as 2048x1024, and at most {most} wide"
+                "a panorama cannot have the size {width}x{height}: give a size that is twice as wide as high, such as 2048x1024, and at most \
+                 {most} pixels wide"
             )));
         }
         Ok(Self { width })

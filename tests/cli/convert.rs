@@ -84,7 +84,7 @@ fn each_scene_gets_a_file_of_its_own_where_braces_stand() {
         let words = format!("convert @/scene.ply -o @/none.ply {flags}");
         let printed = stderr(&done(line(&here, &words)));
         assert!(
-            printed.contains("warning: nothing is left of 2 000"),
+            printed.contains("is empty, because the flags leave out all 2 000"),
             "{printed}"
         );
     }

@@ -85,17 +85,20 @@ fn a_sweep_writes_what_render_writes() {
         ("-o @/frames --sheet", "name that ends in .png or .exr"),
         ("-o @/sheet.apng --sheet", "name that ends in .png or .exr"),
         ("-o @/a_{}.png --sheet", "a film or a sheet is one file"),
-        ("-o @/sheet.png --sheet --part 1/2", "a sheet is whole"),
+        (
+            "-o @/sheet.png --sheet --part 1/2",
+            "not for a film or a sheet",
+        ),
         ("-o @/one.png --sheet-columns 2", "--sheet"),
         ("-o @/one.png", "a sweep makes several pictures: put {}"),
         ("-o -", "--format apng or rgba"),
         ("-o - --format rgba --json", "both take standard output"),
         ("-o @/sw_{}", "a picture's name ends in .png"),
         ("-o @/sw_{}.apng", "a film or a sheet is one file"),
-        ("-o @/frames --fps 9", "--fps is the pace of a film"),
+        ("-o @/frames --fps 9", "--fps is for films"),
         (
             "-o @/frames --format rgba",
-            "--format is what standard output gets",
+            "--format is for standard output",
         ),
         ("-o @/{name}.png", "would be one file"),
         (
@@ -170,20 +173,20 @@ fn parts_together_are_the_whole() {
     for (words, what) in [
         (
             "-o @/{}.png --path orbit --part 0/10",
-            "the parts of 10 are 1/10 to 10/10",
+            "a part from 1/10 to 10/10",
         ),
         (
             "--json --path orbit --part 11/10",
-            "the parts of 10 are 1/10 to 10/10",
+            "a part from 1/10 to 10/10",
         ),
-        ("--json --path orbit --part 3", "as 3/10"),
+        ("--json --path orbit --part 3", "such as 3/10"),
         (
             "--json --part 1/2",
             "--part changes nothing without --path, --view, --section or --from",
         ),
         (
             "-o @/a.apng --path orbit --part 1/2",
-            "--part goes picture by picture, and a film or a sheet is whole",
+            "--part is for pictures in files of their own, and not for a film",
         ),
     ] {
         let words = format!("render @/scene.ply {words}");
@@ -238,7 +241,7 @@ fn what_is_there_is_left_out() {
     for (words, what) in [
         (
             "-o @/a.apng --path orbit --skip-existing",
-            "--skip-existing goes picture by picture",
+            "--skip-existing is for pictures in files of their own",
         ),
         ("-o - --skip-existing", "--skip-existing looks for files"),
         ("--json --skip-existing", "--output"),
@@ -298,7 +301,7 @@ fn each_picture_has_its_line() {
         ),
         (
             "-o @/a.apng --json-lines",
-            "--json-lines goes picture by picture",
+            "--json-lines is for pictures in files of their own",
         ),
     ] {
         refused(

@@ -151,12 +151,9 @@ fn what_does_not_go_together_is_refused_by_name() {
         ("-o - --format rgba --json", "both take standard output"),
         (
             "-o @/a.apng --format rgba",
-            "--format is what standard output gets",
+            "--format is for standard output",
         ),
-        (
-            "-o @/{}.png --path orbit --fps 25",
-            "--fps is the pace of a film",
-        ),
+        ("-o @/{}.png --path orbit --fps 25", "--fps is for films"),
         ("-o @/a.gif", ".apng, .mp4"),
         (
             "-o @/a_{}.apng --path orbit",
@@ -347,7 +344,7 @@ fn a_clip_moves_along_with_the_camera() {
         ),
         (
             "sweep @/scene.ply -o @/a --from plane:1,0,0,0 --to sphere:0,0,0,1 --path orbit",
-            "nothing lies between",
+            "step by step",
         ),
     ] {
         refused(&line(&here, words), 2, says);

@@ -308,7 +308,7 @@ fn slices_show_the_plane_and_cues_its_edge() {
         ),
         (
             "render x.ply -o a.png --section z=.5 --slice --raster quad",
-            "--slice is made by tiles alone, and --raster quad",
+            "--slice needs --raster tiles or auto, and not quad",
         ),
         (
             "render x.ply -o a.png --section z=.5 --slice --raster mesh",
@@ -337,7 +337,7 @@ fn slices_show_the_plane_and_cues_its_edge() {
         ("render x.ply -o a.png --outline red", "--section"),
         (
             "render x.ply -o a.png --panorama --eye 0,0,0 --clip plane:1,0,0,0 --rim red",
-            "--panorama is made of six",
+            "cannot mark a --panorama",
         ),
     ] {
         refused(&line(&here, words), 2, what);

@@ -69,7 +69,7 @@ fn what_is_likely_a_mistake_is_warned_of_unless_nobody_wants_to_know() {
         ),
         (
             "--section z=0.5 --slice --section-thickness 1",
-            "note: --section-thickness changes nothing beside --slice",
+            "note: --section-thickness changes nothing together with --slice",
         ),
         (
             "--clip plane:1,0,0,0 --layer-clip scene=whole",

@@ -576,7 +576,7 @@ fn lists_of_our_own_cameras() {
             r#""near_cut": 0"#,
             "camera 1 (`1`): a near cut at a depth of 0",
         ),
-        (r#""clip_near": 2, "clip_far": 1"#, "nothing lies between"),
+        (r#""clip_near": 2, "clip_far": 1"#, "cut away everything"),
         (
             r#""eye": [0, 0, 0]"#,
             "the eye of camera 1 (`1`) is [0, 0, 0], and its world_to_camera puts it at",

@@ -208,7 +208,7 @@ def test_several_pictures_are_drawn_ahead(renderer, gaussians):
     assert len(rara.path(cameras, 5, closed=True)) == 5
     first = next(renderer.pictures(gaussians, cameras))  # and no more of them
     assert first.size == (32, 24)
-    with pytest.raises(rara.InvalidError, match="nothing lies between"):
+    with pytest.raises(rara.InvalidError, match="step by step"):
         rara.sweep("plane:1,0,0,0", "sphere:0,0,0,1", 3)
     sweep = rara.sweep("plane:x=0%", "plane:x=100%", 3, gaussians)
     light = [picture.array.sum() for picture in renderer.pictures(gaussians, sweep, cameras[0])]

@@ -214,6 +214,6 @@ fn a_panorama_is_put_together_of_the_pictures_of_its_faces() {
     assert_fails(
         assemble(63, pointers),
         RARA_ERROR_INVALID,
-        "a panorama of 63",
+        "a panorama cannot have the size 63",
     );
 }

@@ -143,8 +143,8 @@ impl FilmArgs {
         let kind = match self.format {
             Some(_) if !is_stream => {
                 return Err(Failure::Usage(
-                    "--format is what standard output gets: give it with -o -, or leave it out, as a file's name says its \
-                     format"
+                    "--format is for standard output; the name of a file says its format: leave out --format, or write to standard \
+                     output by -o -"
                         .into(),
                 ));
             }
@@ -165,14 +165,14 @@ impl FilmArgs {
         };
         if self.alpha && kind.is_none() {
             return Err(Failure::Usage(
-                "--alpha keeps the transparency of a film: give -o a name that ends in .mov or .webm, or leave it out, as \
-                 pictures have it"
+                "--alpha is for films; pictures keep their transparency without it: leave out --alpha, or give -o a name that ends in \
+                 .mov or .webm"
                     .into(),
             ));
         }
         if self.fps.is_some() && !matches!(kind, Some(FilmFormat::Apng | FilmFormat::Video(_))) {
             return Err(Failure::Usage(format!(
-                "--fps is the pace of a film: give -o a name that ends in .apng, {ENDINGS}, or leave it out"
+                "--fps is for films: leave it out, or give -o a name that ends in .apng, {ENDINGS}"
             )));
         }
         Ok(kind)
@@ -312,8 +312,8 @@ pub(super) fn one_size(
 /// Says once what becomes of transparency where a film has none.
 pub(super) fn say_opaque() {
     output::say(
-        "note: such a film has no transparency: it is drawn on black; --background chooses another colour, and --alpha keeps the \
-         transparency of a .mov or .webm",
+        "note: this kind of film has no transparency, so it is drawn on black; --background chooses another colour, and --alpha \
+         keeps the transparency of a .mov or .webm",
     );
 }
 

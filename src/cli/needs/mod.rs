@@ -1,4 +1,4 @@
-//! Which flags have an effect only beside others. Clap's own `requires` waives what conflicts with something that is given,
+//! Which flags have an effect only together with others. Clap's own `requires` waives what conflicts with something that is given,
 //! and would then leave a flag without any.
 
 #[cfg(all(test, feature = "view"))]
@@ -110,7 +110,7 @@ pub(super) fn check(command: &Command, typed: &ArgMatches) -> Result<(), Failure
             None => {}
             Some((what, true)) => {
                 let relation = match need {
-                    Without(_) => "beside",
+                    Without(_) => "together with",
                     _ => "without",
                 };
                 output::say(format_args!(
@@ -118,9 +118,15 @@ pub(super) fn check(command: &Command, typed: &ArgMatches) -> Result<(), Failure
                 ));
             }
             Some((what, false)) => {
+                let it = match need {
+                    Flag(ids) if ids.iter().filter(|id| has(command, id)).count() > 1 => {
+                        "one of them"
+                    }
+                    _ => "it",
+                };
                 let give = match need.rival(command, typed) {
-                    Some(rival) => format!("give that in place of {rival}"),
-                    None => format!("give {what}"),
+                    Some(rival) => format!("give {it} in place of {rival}"),
+                    None => format!("give {it}"),
                 };
                 return Err(Failure::Usage(format!(
                     "{shown} changes nothing without {what}: {give}, or leave out {shown}"

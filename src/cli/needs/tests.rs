@@ -173,21 +173,18 @@ fn what_conflicts_with_a_need_does_not_meet_it() {
     for (words, says) in [
         (
             "--section z=0.5 --frames 9",
-            "without --path or --from: give --path or --from,",
+            "without --path or --from: give one of them,",
         ),
         (
             "--panorama --slice",
-            "without --section: give that in place of --panorama,",
+            "without --section: give it in place of --panorama,",
         ),
         (
             "--panorama --section-thickness 1",
-            "without --section: give that in place of --panorama,",
+            "without --section: give it in place of --panorama,",
         ),
         ("--panorama --outline 1,1,1", "without --section, --clip"),
-        (
-            "--frames 9",
-            "without --path or --from: give --path or --from,",
-        ),
+        ("--frames 9", "without --path or --from: give one of them,"),
     ] {
         let words: Vec<_> = words.split(' ').collect();
         let refused = check(&render, &typed(&render, &words)).expect_err("it is refused");

@@ -16,7 +16,7 @@ use serde_json::json;
 
 use super::failure::Failure;
 use super::film::{self, FilmArgs, FilmFormat};
-use super::output::{self, STANDARD, counted, counted_are, say};
+use super::output::{self, STANDARD, counted_are, say};
 use super::pattern::{filled, is_several};
 use super::report::{Answer, FrameRecord};
 use super::scenes::SceneArgs;
@@ -169,8 +169,8 @@ impl PictureArgs {
                 self.film.check(*kind, file)?;
                 if several.is_none() && *kind != FilmFormat::Sheet {
                     output::warn_once(
-                        "note: this is a film of one picture, as nothing moves; --path orbit moves the camera, and rara sweep a \
-                         clip"
+                        "note: this is a film of one picture, because nothing moves; --path orbit moves the camera, and rara sweep \
+                         moves a clip"
                             .into(),
                     );
                 }
@@ -235,8 +235,8 @@ impl PictureArgs {
         let whole = is_given(&["--part", "--skip-existing", "--json-lines"]);
         if let (OutputTarget::Film(..), Some(flag)) = (place, whole) {
             return Err(Failure::Usage(format!(
-                "{flag} goes picture by picture, and a film or a sheet is whole: leave it out, or name numbered pictures, as -o \
-                 frame_{{:04}}.png"
+                "{flag} is for pictures in files of their own, and not for a film or a sheet: leave out {flag}, or name numbered \
+                 pictures, as in -o frame_{{:04}}.png"
             )));
         }
         let is_png = match place {
@@ -247,7 +247,8 @@ impl PictureArgs {
         };
         if self.png.is_some() && !is_png {
             return Err(Failure::Usage(
-                "--png is how .png files are compressed: give -o a name that ends in .png, or leave it out".into(),
+                "--png is for .png files: leave out --png, or give -o a name that ends in .png"
+                    .into(),
             ));
         }
         if is_stream && self.skip_existing {
@@ -258,7 +259,7 @@ impl PictureArgs {
         }
         if self.part.is_some() && !several {
             return Err(Failure::Usage(
-                "--part divides several pictures, and there is one: leave it out, or ask for more by --path, --view all or \
+                "--part divides several pictures, but this command draws one: leave out --part, or draw more by --path, --view all or \
                  --section"
                     .into(),
             ));
@@ -372,8 +373,7 @@ impl Destination<'_> {
             planned = part.take_from(planned);
             if planned.is_empty() {
                 say(format_args!(
-                    "note: part {part} of {} is empty",
-                    counted(whole as u64, "picture")
+                    "note: part {part} has no picture, because there are fewer pictures ({whole}) than parts"
                 ));
             }
         }

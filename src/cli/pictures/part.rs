@@ -19,8 +19,12 @@ impl FromStr for RunPart {
             numbers.and_then(|(number, of)| Some((number.parse().ok()?, of.parse().ok()?)));
         match numbers {
             Some((number, of)) if (1..=of).contains(&number) => Ok(Self { number, of }),
-            Some((_, of)) if of > 0 => Err(format!("the parts of {of} are 1/{of} to {of}/{of}")),
-            _ => Err("expected a part and the number of parts, as 3/10".into()),
+            Some((number, of)) if of > 0 => Err(format!(
+                "there is no part {number} of {of}: give a part from 1/{of} to {of}/{of}"
+            )),
+            _ => Err(
+                "expected the number of a part and the number of all parts, such as 3/10".into(),
+            ),
         }
     }
 }

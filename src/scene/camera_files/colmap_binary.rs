@@ -166,9 +166,9 @@ impl<'a, R: Read + Seek> Records<'a, R> {
             .read_until(0, &mut name)
             .map_err(Error::io(self.path))?;
         if name.pop() != Some(0) {
-            return Err(
-                self.error("a picture's name does not end; this is no COLMAP model or cut off")
-            );
+            return Err(self.error(
+                "a picture's name does not end; this is not a COLMAP model, or it is cut off",
+            ));
         }
         self.take(name.len() as u64 + 1)?;
         Ok(String::from_utf8_lossy(&name).into_owned())

@@ -124,7 +124,7 @@ impl<'a, R: Read> Lines<'a, R> {
             .read_until(b'\n', &mut self.line)
             .map_err(Error::io(self.path))?;
         if read as u64 == MAX_LINE {
-            return Err(self.error("the line is too long; this is no COLMAP model"));
+            return Err(self.error("the line is too long; this is not a COLMAP model"));
         }
         Ok(read > 0)
     }

@@ -95,7 +95,7 @@ fn length(head: &[u8]) -> std::result::Result<u32, String> {
     let number = |at: usize| Some(u32::from_le_bytes(head.get(at..at + 4)?.try_into().ok()?));
     match (number(4), number(12), head.get(16..20)) {
         (Some(2), Some(length), Some(JSON)) => Ok(length),
-        _ => Err("this is no .glb of glTF 2 that begins with its JSON; export it again".into()),
+        _ => Err("this is not a .glb of glTF 2 that begins with its JSON; export it again".into()),
     }
 }
 

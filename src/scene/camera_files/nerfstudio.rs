@@ -148,7 +148,7 @@ fn pose(rows: &[[f64; 4]], name: &str, what: &str) -> Result<Pose, String> {
         _ => None,
     };
     let matrix = whole.ok_or_else(|| {
-        format!("the {name} of {what} is no 4x4 matrix that ends in 0, 0, 0, 1; export the cameras again")
+        format!("the {name} of {what} is not a 4x4 matrix that ends in 0, 0, 0, 1; export the cameras again")
     })?;
     let [x, y, z] = DMat3::from_mat4(matrix).to_cols_array_2d().map(DVec3::from);
     // OpenGL's up and backward are our down and forward, turned round.

@@ -55,7 +55,7 @@ impl Expression {
 
 fn unlike(from: &impl std::fmt::Display, to: &impl std::fmt::Display) -> Error {
     Error::Invalid(format!(
-        "nothing lies between '{from}' and '{to}': give two regions with the same kinds of shapes in the same order"
+        "'{from}' cannot change into '{to}' step by step: give two clips that have the same kinds of shapes in the same order"
     ))
 }
 

@@ -8,7 +8,6 @@ use glam::{DMat3, DQuat, DVec2, DVec3};
 
 use super::{Clip, ClipOp, Plane};
 use crate::axis::Axis;
-use crate::camera::{Camera, Projection};
 use crate::placement::Placement;
 use crate::text_reader::{joined, number};
 use rara_base::error::{Error, Result};
@@ -64,8 +63,8 @@ impl PrismBase {
                 let named = Axis::parse(name).filter(|_| !name.contains('!'));
                 let Some(along) = named.map(|axis| axis.along) else {
                     return Err(Error::Invalid(format!(
-                        "a polygon across '{name}': use a direction such as 0,0.6,0.8, or one of the axes x, y, z, sagittal, coronal \
-                         and axial"
+                        "a polygon cannot have the axis '{name}': give a direction such as 0,0.6,0.8, or one of the axes x, y, z, sagittal, \
+                         coronal and axial"
                     )));
                 };
                 let [u, v] = across(along);
@@ -73,9 +72,7 @@ impl PrismBase {
             }
             Self::Direction(direction) => {
                 let Some(along) = direction.try_normalize() else {
-                    return invalid(
-                        "a polygon across a direction that is zero or not finite: give x,y,z",
-                    );
+                    return invalid("the direction of a polygon is zero or not finite: give X,Y,Z");
                 };
                 // The direction is turned from the nearest axis, as which its opposite counts.
                 let sizes = along.abs();
@@ -99,13 +96,13 @@ impl PrismBase {
                 }
                 (*right, *down, along, Some(*eye))
             }
+        };
+        Ok(Frame { u, v, along, eye })
+    }
 
     /// The axes of the corners' numbers.
     pub(super) fn across(&self) -> Result<[DVec3; 2]> {
         self.frame().map(|frame| [frame.u, frame.v])
-    }
-        };
-        Ok(Frame { u, v, along, eye })
     }
 }
 
@@ -136,7 +133,7 @@ impl Prism {
             && low.partial_cmp(&high) != Some(Ordering::Less)
         {
             return invalid(format!(
-                "from {low} to {high}: the first height is below the second"
+                "goes from height {low} to height {high}: the first height has to be below the second"
             ));
         }
         let cleaned: Vec<Vec<DVec2>> = rings.iter().map(|ring| without_repeats(ring)).collect();
@@ -149,8 +146,9 @@ impl Prism {
             }
             if ring.len() < 3 {
                 return invalid(format!(
-                    "needs three corners that are not in line; {} has fewer",
-                    called(number)
+                    "has too few corners: {} has {}, and needs three corners that are not on one line",
+                    called(number),
+                    ring.len()
                 ));
             }
         }
@@ -164,7 +162,7 @@ impl Prism {
         let is_inside = |ring: &[DVec2]| winds_around(outer, ring[0]);
         if let Some(number) = (1..cleaned.len()).find(|&number| !is_inside(&cleaned[number])) {
             return invalid(format!(
-                "has a hole that is not inside of it: {}",
+                "has a hole outside of its outline: {}; move it into the outline",
                 called(number)
             ));
         }
@@ -454,7 +452,7 @@ impl fmt::Display for Prism {
 /// How messages call a ring.
 fn called(number: usize) -> String {
     match number {
-        0 => "the polygon itself".into(),
+        0 => "its outline".into(),
         hole => format!("hole {hole}"),
     }
 }

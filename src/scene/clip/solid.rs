@@ -293,14 +293,19 @@ fn slab(plane: Plane, thickness: f64) -> Result<Clip> {
     let beyond = Plane::new(-plane.normal(), thickness - plane.offset())?;
     match thickness > 0.0 {
         true => Ok(all_of([plane, beyond])),
-        false => Err(Error::Invalid("a slab's thickness is above zero".into())),
+        false => Err(Error::Invalid(format!(
+            "a slab has the thickness {thickness}: give a number above zero"
+        ))),
     }
 }
 
 fn cuboid(centre: DVec3, half: DVec3, rotation: DQuat) -> Result<Clip> {
     let has_sizes = half.min_element() > 0.0;
     if !has_sizes {
-        return Err(Error::Invalid("a box's half sizes are above zero".into()));
+        let [x, y, z] = half.to_array();
+        return Err(Error::Invalid(format!(
+            "a box has the half sizes {x}, {y} and {z}: give three numbers above zero"
+        )));
     }
     let side = |index: usize| {
         let inward = if index < 3 { -1.0 } else { 1.0 };

@@ -211,7 +211,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<FormatOutput, Failure> {
                     .chunks_exact(section.bucket_bytes)
                     .nth(bucket);
                 let centre = centre.ok_or_else(|| {
-                    format!("Gaussian {index} of a section is in bucket {bucket}, which there is not; export the scene again")
+                    format!("Gaussian {index} of a section is in bucket {bucket}, which the file does not have; export the scene again")
                 })?;
                 for (axis, to) in row[..SCALES].iter_mut().enumerate() {
                     let steps = f64::from(u16_at(record, 2 * axis)) - section.steps;

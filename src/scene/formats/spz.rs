@@ -40,7 +40,7 @@ impl SpzHeader {
         let mut bytes = Bytes(bytes);
         if bytes.take(4, what)? != MAGIC {
             return Err(
-                "it is compressed with gzip, but is no .spz scene; decompress it and give what is in it".into(),
+                "it is compressed with gzip, but it is not a .spz scene; decompress it, and give the file that is in it".into(),
             );
         }
         let (version, count) = (bytes.u32(what)?, bytes.u32(what)?.into());

@@ -11,7 +11,7 @@ use rara_base::rows;
 /// What to do about files of several kinds.
 const EXPORT: &str = "export its Gaussians as .ply from the program that made it";
 const POINTS: &str =
-    "points and meshes are no Gaussians; train a scene, and give the .ply that training wrote";
+    "points and meshes are not Gaussians; train a scene, and give the .ply that training wrote";
 const TRAINED: &str = "let the trainer export a .ply, and give that";
 const UNPACK: &str = "unpack it, and give the scene that is in it";
 const PICTURE: &str = "give a scene's file";

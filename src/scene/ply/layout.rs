@@ -84,7 +84,7 @@ impl<'a> Layout<'a> {
         }
         if !missing.is_empty() {
             return Err(format!(
-                "the `vertex` element lacks {}; export the scene with all 3DGS properties",
+                "the `vertex` element does not have {}; export the scene with all 3DGS properties",
                 missing.join(", ")
             ));
         }

@@ -116,7 +116,7 @@ impl Table {
         let mut columns = Vec::new();
         for name in names {
             columns.push(self.column(name).ok_or_else(|| {
-                format!("the `{element}` element lacks {name}; export the scene again")
+                format!("the `{element}` element does not have {name}; export the scene again")
             })?);
         }
         Ok(std::array::from_fn(|at| columns[at]))
@@ -237,7 +237,9 @@ fn assemble(
         .map(|number| {
             let name = format!("f_rest_{number}");
             let column = harmonics.and_then(|table| table.column(&name));
-            column.ok_or_else(|| format!("the `sh` element lacks {name}; export the scene again"))
+            column.ok_or_else(|| {
+                format!("the `sh` element does not have {name}; export the scene again")
+            })
         })
         .collect();
     let columns = columns?;

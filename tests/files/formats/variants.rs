@@ -320,7 +320,9 @@ fn gltf_of_integers_and_a_matrix() {
     }
     let error = read(&document.replace(r#""scene":0"#, r#""scene":7"#)).unwrap_err();
     assert!(
-        error.to_string().contains("a scene that there is not"),
+        error
+            .to_string()
+            .contains("a scene that the file does not have"),
         "{error}"
     );
     let required = |name: &str| {

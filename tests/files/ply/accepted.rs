@@ -260,7 +260,9 @@ fn what_a_header_lacks_is_made_up_for_and_said() {
             properties.retain(|(_, name)| *name != "blue");
             let error = load_bytes(&scene_file(format, 5, &properties).bytes()).unwrap_err();
             assert!(
-                error.to_string().contains("lacks f_dc_0, f_dc_1, f_dc_2"),
+                error
+                    .to_string()
+                    .contains("does not have f_dc_0, f_dc_1, f_dc_2"),
                 "{error}"
             );
         }

@@ -57,8 +57,8 @@ fn headers_that_are_refused() {
             with("property float f_offset_0\nproperty float f_anchor_feat_0\n"),
             "anchors of Scaffold-GS",
         ),
-        (without("opacity"), "lacks opacity"),
-        (without("rot_3"), "lacks rot_3"),
+        (without("opacity"), "does not have opacity"),
+        (without("rot_3"), "does not have rot_3"),
         (
             with("property float x\n"),
             "line 19 of the header declares the property `x` a second time",

@@ -88,8 +88,8 @@ fn corners_lie_across_the_axis() {
 #[test]
 fn what_is_no_simple_polygon_is_refused_by_place() {
     for (text, says) in [
-        ("w;0,0;1,0;1,1", "across 'w'"),
-        ("!z;0,0;1,0;1,1", "across '!z'"),
+        ("w;0,0;1,0;1,1", "axis 'w'"),
+        ("!z;0,0;1,0;1,1", "axis '!z'"),
         ("z", "needs corners"),
         ("z;0,0;1,0", "three corners"),
         ("z;0,0;1,0;2,0", "three corners"),
@@ -102,9 +102,9 @@ fn what_is_no_simple_polygon_is_refused_by_place() {
         ("z;0,0;9,0;9,9;0,9|8,8;12,8;12,9", "cross or touch"),
         (
             "z;0,0;9,0;9,9;0,9|10,8;12,8;12,9",
-            "not inside of it: hole 1",
+            "outside of its outline: hole 1",
         ),
-        ("z=2..1;0,0;1,0;1,1", "from 2 to 1"),
+        ("z=2..1;0,0;1,0;1,1", "height 2 to height 1"),
         ("z=2;0,0;1,0;1,1", "two heights"),
         ("z;0,0;1;1,1", "'1' is not a corner"),
         ("z;0,0;1,x;1,1", "'x' is not a finite number"),
@@ -116,7 +116,7 @@ fn what_is_no_simple_polygon_is_refused_by_place() {
             "from 1,2,3/1,0,0/0,2,0;0,0;1,0;1,1",
             "perpendicular and of length 1",
         ),
-        ("plot.geojson", "across 'plot.geojson'"),
+        ("plot.geojson", "axis 'plot.geojson'"),
     ] {
         let error = Prism::read(text).expect_err(text).to_string();
         assert!(error.contains(says), "{text}: {error}");

@@ -52,7 +52,8 @@ impl Accessor {
             ))
         };
         let accessor = list(document, "accessors").get(number);
-        let accessor = accessor.ok_or_else(|| wrong("has an accessor that there is not"))?;
+        let accessor =
+            accessor.ok_or_else(|| wrong("refers to an accessor that the file does not have"))?;
         if index(accessor, "count") != Some(count) {
             return Err(wrong(&format!(
                 "is not of {} as the others are",

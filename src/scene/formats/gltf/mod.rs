@@ -169,7 +169,7 @@ pub(super) fn read_document(
     }
     if others > 0 {
         whole.report.note(format!(
-            "left out {others} primitive(s) of the glTF that are no Gaussians"
+            "left out {others} primitive(s) of the glTF that are not Gaussians"
         ));
     }
     Ok(whole)
@@ -228,7 +228,7 @@ impl<'a> Mesh<'a> {
     fn from_json(document: &'a Value, number: usize) -> Result<Self, Failure> {
         let mesh = list(document, "meshes").get(number).ok_or_else(|| {
             format!(
-                "a node of the glTF has mesh {number}, which there is not; export the scene again"
+                "a node of the glTF refers to mesh {number}, which the file does not have; export the scene again"
             )
         })?;
         let all = list(mesh, "primitives");

@@ -108,7 +108,7 @@ pub(super) fn meshes(
         .and_then(|scene| scenes.get(scene));
     let scene = scene.ok_or_else(|| {
         format!(
-            "the glTF shows a scene that there is not, of {}; export the scene again",
+            "the glTF names a scene that the file does not have, of {}; export the scene again",
             scenes.len()
         )
     })?;

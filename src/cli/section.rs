@@ -18,11 +18,11 @@ use super::views::NamedView;
 pub(super) struct SectionArgs {
     /// Cut across an axis and face the cut: axial=40%, z=10%..90%:9, z@12.5 (repeatable)
     ///
-    /// AXIS=SHARE cuts at a share, from 0 to 1 or from 0% to 100%, of the extent of the robust bounds that rara info prints.
-    /// AXIS@POSITION cuts at a position along the axis, world units. FROM..TO:COUNT in place of a share or a position makes COUNT
-    /// sections in equal steps. Axes are z or axial, y or coronal, x or sagittal. Any other NAME cuts at the plane of this name in
-    /// the file of --clip-file, whose other clips are then not used. A ! before the axis or the name, as in !axial=40%, looks from
-    /// the other side. The picture has no perspective.
+    /// AXIS=SHARE cuts across an axis, at a share of the extent of the robust bounds that rara info prints. SHARE is from 0 to 1,
+    /// or from 0% to 100%. AXIS@POSITION cuts at a position along the axis, world units. FROM..TO:COUNT in place of a share or a
+    /// position makes COUNT sections in equal steps. AXIS is x or sagittal, y or coronal, z or axial. NAME alone cuts at the plane of
+    /// this name in the file of --clip-file, even if an axis has the same name; the other clips of the file are then not used. A !
+    /// before AXIS or NAME, as in !axial=40%, looks from the other side. The picture has no perspective.
     #[arg(long, value_name = "AXIS=SHARE|NAME", value_parser = wanted, allow_hyphen_values = true)]
     section: Vec<SectionRequest>,
     /// Thickness of the kept slab, world units [default: no limit]
@@ -90,7 +90,7 @@ impl Steps {
                 count,
             }),
             _ => Err(format!(
-                "'{count}' is no number of sections from 1 to {MOST}"
+                "'{count}' is not a number of sections from 1 to {MOST}"
             )),
         }
     }
@@ -116,10 +116,9 @@ fn wanted(text: &str) -> Result<SectionRequest, String> {
     }
     let Some((name, shares)) = text.split_once('=') else {
         return match text {
-            "" => Err("expected an axis and a share, as axial=50%, or the name of a plane".into()),
-            name if Axis::parse(name).is_some() => Err(format!(
-                "{name} needs a share of the scene, as in {name}=50%, or a position, as in {name}@12.5"
-            )),
+            "" => Err(
+                "expected an axis and a share, such as axial=50%, or the name of a plane".into(),
+            ),
             name => Ok(match name.strip_prefix('!') {
                 Some(name) => SectionRequest::Named(name.into(), true),
                 None => SectionRequest::Named(name.into(), false),
@@ -127,7 +126,7 @@ fn wanted(text: &str) -> Result<SectionRequest, String> {
         };
     };
     let axis = Axis::parse(name).ok_or_else(|| {
-        format!("'{name}' is no axis; there are axial (z), coronal (y) and sagittal (x), each with a leading ! or without")
+        format!("'{name}' is not an axis; the axes are axial (z), coronal (y) and sagittal (x), each with or without a leading !")
     })?;
     let shares = Steps::parse(shares, share)?;
     Ok(SectionRequest::Across { axis, shares })
@@ -197,7 +196,7 @@ impl SectionArgs {
         };
         if shapes.op() != ClipOp::And {
             return Err(Failure::Usage(
-                "a section keeps what is behind it and kept by every --clip: leave out --clip-op or".into(),
+                "a --section and the other shapes together keep what is inside all of them: leave out --clip-op or".into(),
             ));
         }
         let mut planned = Vec::new();
@@ -251,16 +250,24 @@ impl SectionArgs {
 
 fn unknown<'a>(name: &str, names: impl Iterator<Item = &'a str>) -> Failure {
     let names: Vec<_> = names.collect();
-    let there = match names.is_empty() {
-        true => "there is no --clip-file to take it from; across an axis a section is written as axial=50%".into(),
-        false => {
+    let why = match (Axis::parse(name), &names[..]) {
+        (Some(_), _) => format!(
+            "give a share of the scene along this axis, as in {name}=50%, or a position, as in {name}@12.5; no --clip-file has a \
+             plane of this name"
+        ),
+        (None, []) => {
+            "no --clip-file has a plane of this name; a section across an axis is written as axial=50%"
+                .into()
+        }
+        (None, names) => {
             let meant = values::meant(name, names.iter().copied());
-            format!("the planes of --clip-file are {}{meant}", names.join(", "))
+            format!(
+                "no --clip-file has a plane of this name; there are {}{meant}",
+                names.join(", ")
+            )
         }
     };
-    Failure::Usage(format!(
-        "--section {name}: there is no plane of that name: {there}"
-    ))
+    Failure::Usage(format!("--section {name}: {why}"))
 }
 
 impl Sections {

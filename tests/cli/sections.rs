@@ -123,7 +123,8 @@ fn a_section_faces_its_plane() {
     }
     let plain = drawn(&here, "--section z=0.4");
     assert!(plain == drawn(&here, "--section axial=40%"));
-    let named = r#"[{"name":"low","normal":[0,0,1],"d":0.25}]"#;
+    let named =
+        r#"[{"name":"low","normal":[0,0,1],"d":0.25},{"name":"axial","normal":[0,0,1],"d":0.25}]"#;
     fs::write(here.join("planes.json"), named).expect("writes");
     let low = |name: &str| {
         drawn(
@@ -133,6 +134,8 @@ fn a_section_faces_its_plane() {
     };
     assert!(low("low") == drawn_at(&here, "--section z@-0.25"));
     assert!(low("!low") == drawn_at(&here, "--section !z@-0.25"));
+    // A name without a share is that of a plane, even if an axis has it too.
+    assert!(low("axial") == low("low"));
     assert!(plain != drawn(&here, "--section z=0.4 --up 1,0,0"));
     // What is up along the view says nothing of the picture.
     assert!(plain == drawn(&here, "--section z=0.4 --up z"));
@@ -224,6 +227,7 @@ fn a_section_has_the_plane_of_a_file() {
     }
     for (flags, what) in [
         ("--section skin", "mid, other"),
+        ("--section axial", "as in axial=50%"),
         (
             "--section mid --save-clip @/saved.json",
             "give one by --clip or --clip-expr",

@@ -22,7 +22,6 @@ fn shares_are_one_or_equal_steps() {
 fn what_is_no_section_is_refused_with_what_would_be() {
     for (text, says) in [
         ("", "axial=50%"),
-        ("axial", "axial=50%"),
         ("w=0.5", "sagittal"),
         ("z=2", "from 0 to 1"),
         ("z=0.1..0.9", "FROM..TO:COUNT"),
@@ -31,10 +30,9 @@ fn what_is_no_section_is_refused_with_what_would_be() {
         let error = wanted(text).expect_err(text);
         assert!(error.contains(says), "{text}: {error}");
     }
-    assert_eq!(
-        wanted("skin"),
-        Ok(SectionRequest::Named("skin".into(), false))
-    );
+    for name in ["skin", "axial"] {
+        assert_eq!(wanted(name), Ok(SectionRequest::Named(name.into(), false)));
+    }
     assert_eq!(
         wanted("!skin"),
         Ok(SectionRequest::Named("skin".into(), true))

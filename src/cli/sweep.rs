@@ -48,8 +48,10 @@ pub(super) struct Sweep {
     #[arg(short, long, value_name = "OUT")]
     output: Option<PathBuf>,
     /// The normal of a plane that moves across the scene; it points to the side that is kept
+    ///
+    /// rara sweep needs either this flag, or --from and --to.
     #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]
-    #[arg(required_unless_present = "from", conflicts_with = "from")]
+    #[arg(conflicts_with = "from")]
     clip_normal: Option<DVec3>,
     #[command(flatten)]
     moving: MovingArgs,
@@ -135,11 +137,18 @@ impl Sweep {
         };
         let pace = (frames, self.path.ease());
         let moving = self.moving.meant(self.clip_normal, pace)?;
+        let moving = moving.ok_or_else(|| {
+            Failure::Usage(
+                "sweep needs a clip that moves: give --clip-normal for a plane that moves across the scene, or --from and --to \
+                 for a clip that changes into another one"
+                    .into(),
+            )
+        })?;
         Ok(SweepPlan {
             settings,
             regions,
             views,
-            moving: moving.expect("one of them is required"),
+            moving,
             frames,
         })
     }

@@ -232,6 +232,7 @@ fn a_wrong_command_line_is_status_2_and_one_line() {
         ("render x.ply -o a.png --sh-degree 4", "4"),
         ("render x.ply -o a.png --repeat 0", "0"),
         ("sweep x.ply", "--clip-normal"),
+        ("sweep x.ply", "--from and --to"),
         ("sweep x.ply --clip-normal 0,0,0", "zero"),
         ("sweep x.ply --clip-normal 1,0,0 --frames 0", "0"),
         (

@@ -10,7 +10,6 @@ use rara_shots::{Face, Panorama, levelled};
 
 use super::clip::{Regions, joined};
 use super::failure::Failure;
-use super::film;
 use super::frame::FrameArgs;
 use super::kept::SessionCache;
 use super::labels::LabelArgs;
@@ -62,10 +61,10 @@ pub(super) struct Render {
     /// A picture (.png, .exr, .npy) or film (.apng, .mp4, .mov, .mkv, .webm); - is stdout
     ///
     /// Folders that do not exist are created. {} becomes the number of the camera or section, {:04} the number with leading
-    /// zeros, and {name} the name. If OUT is a folder, several pictures are written into it as frame_000.png and so on. A
-    /// film contains all pictures; .apng needs no other program, and the other films need ffmpeg. --format chooses what is
+    /// zeros, and {name} the name. If OUT is a folder or a name without an ending, several pictures are written into this
+    /// folder as frame_000.png and so on. A film contains all pictures; .apng needs no other program, and the other films need ffmpeg. --format chooses what is
     /// written to standard output. With --json or --json-lines, --output is optional.
-    #[arg(short, long, value_name = "OUT", value_parser = film::pictures_file())]
+    #[arg(short, long, value_name = "OUT")]
     #[arg(required_unless_present_any = ["json", "json_lines"])]
     output: Option<PathBuf>,
     /// Extra channels, added to an .exr, or in separate files next to a .png (16 bits) or .npy

@@ -126,7 +126,8 @@ fn a_folder_gets_numbered_pictures() {
     let here = folder("folder_outputs");
     scene(&here);
     let words = "render @/scene.ply --size 24x24 --section z=0.2..0.8:3";
-    done(line(&here, &format!("{words} -o @/sections/")));
+    // A name without an ending is that of a folder, which need not be there.
+    done(line(&here, &format!("{words} -o @/sections")));
     done(line(&here, &format!("{words} -o @/{{}}.png")));
     for index in 0..3 {
         let [a, b] = [
@@ -138,6 +139,10 @@ fn a_folder_gets_numbered_pictures() {
     }
     let one = line(&here, "render @/scene.ply -o @/none/");
     refused(&one, 1, "this is a folder; name a file in it");
+    let one = line(&here, "render @/scene.ply -o @/none");
+    refused(&one, 2, "a picture's name ends in .png");
+    let other = line(&here, &format!("{words} -o @/none.jpg"));
+    refused(&other, 2, "a picture's name ends in .png");
     assert!(!here.join("none").exists());
 }
 

@@ -9,7 +9,6 @@ use std::ffi::OsString;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use clap::builder::{OsStringValueParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use rara::{Error, Picture, PngCompression, Result};
 use rara_base::files::PartialFile;
@@ -94,14 +93,6 @@ pub(super) fn film_path(path: OsString) -> std::result::Result<PathBuf, String> 
 /// True for a file that can hold a sheet.
 fn is_sheet(file: &Path) -> bool {
     output::ends_in(file, "png") || output::ends_in(file, "exr")
-}
-
-/// The parser of the file name of a picture or a film, or of a folder.
-pub(super) fn pictures_file() -> impl TypedValueParser<Value = PathBuf> {
-    OsStringValueParser::new().try_map(|path| match values::is_folder(Path::new(&path)) {
-        true => Ok(path.into()),
-        false => film_path(path),
-    })
 }
 
 impl FilmFormat {

@@ -196,7 +196,7 @@ impl PictureArgs {
                     None => OutputTarget::Files(file),
                 });
             }
-            Err(why) if !is_folder && is_several(output) => {
+            Err(why) if !is_folder && !(several && may_be_a_folder(output)) => {
                 return Err(Failure::Usage(format!("{}: {why}", output.display())));
             }
             _ => {}
@@ -266,6 +266,12 @@ impl PictureArgs {
         }
         Ok(())
     }
+}
+
+/// True for a name that stands neither for several files nor for a file of another kind: its ending, if any, is a part of a number.
+fn may_be_a_folder(output: &Path) -> bool {
+    let ending = output.extension().unwrap_or_default().as_encoded_bytes();
+    !is_several(output) && !ending.first().is_some_and(u8::is_ascii_alphabetic)
 }
 
 /// Fails where several pictures would be one file, or the first one could not be written.

@@ -316,7 +316,7 @@ fn slices_show_the_plane_and_cues_its_edge() {
         ),
         (
             "render x.ply -o a.png --section z=.5 --slice --raster mesh",
-            "--raster mesh",
+            "--raster tiles or auto, and not mesh",
         ),
         (
             "render @/scene.ply -o @/a.png --scale-bar",

@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // One invocation a block finds what view and clip together say about all of its Gaussians.
+#define MESHES_BINDING 6
 #include "frame.glsl"
 
 layout(local_size_x = BLOCK_GROUP_SIZE) in;

@@ -3,6 +3,7 @@
 // One workgroup a block that neither view nor clip settles as a whole. It culls by footprint, opacity and size, and finds
 // the side of what is in view. It writes two bits a Gaussian (survives, is cut) and the block's totals; compact turns them
 // into ordered lists.
+#define MESHES_BINDING 9
 #include "beam.glsl"
 #define SETS 3u // visible, cut, invisible
 #include "side_masks.glsl"

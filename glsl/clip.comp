@@ -4,6 +4,7 @@
 // (section 3.2), whatever the camera sees of it. (Classify adds what perspective adds to the band of large splats.) A
 // block's masks are eight words of what is visible and eight of what is cut.
 #define OF_CUT
+#define MESHES_BINDING 6
 #include "axes.glsl"
 #include "band.glsl"
 #define SETS 2u // visible, cut

@@ -3,6 +3,7 @@
 // One invocation a block finds on which side of the clip it lies, which depends on the clip alone, not on the camera. The
 // blocks of a hidden layer count as invisible, so that none of their Gaussians is looked at.
 #define OF_CUT
+#define MESHES_BINDING 5
 #include "frame.glsl"
 
 layout(local_size_x = BLOCK_GROUP_SIZE) in;

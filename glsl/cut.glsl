@@ -10,7 +10,7 @@
 // Several planes in the affine form are such a record with the footprint's gradients and no lean. Without CUT_BEAM there is
 // one plane, which the rasteriser carries: 3 holds z at the centre, dz/dx and dz/dy, 4 its curvature, the factors of dx^2,
 // dx dy and dy^2. With CUT_COMBINED each surface has ENTRY_VECTORS vec4s: normal and distance; the bend's xx, yy, zz and the
-// operators of SurfaceData; xy, xz, yz. With CUT_CURVE, in the coordinates of curve.glsl, 0 holds z at the centre and its slopes, 1 the factors
+// operators of SurfaceData; xy, xz, yz. With CUT_FACES a mesh has several such entries. With CUT_CURVE, in the coordinates of curve.glsl, 0 holds z at the centre and its slopes, 1 the factors
 // of u^2, u v, v^2 and v^4, 2 those of u^3, u^2 v, u v^2 and v^3, 3 those of u^4, u^3 v, u^2 v^2 and u v^3. With CUT_TERMS
 // these are of the value of a surface's terms (region/crossing.glsl) instead; 4 holds their variance at the centre and its slopes,
 // 5 its factors of u^2, u v and v^2, 6 those of u^3, u^2 v, u v^2 and v^3; 4 and 5 end with the bend at the centre and its slope
@@ -38,6 +38,8 @@ const uint CUT_STRIP = 64u;
 // More surfaces cut the splat than the record has room for: its last vec4's x names a long record as z does, which holds them all. It
 // lies behind those of all Gaussians and takes several of their places.
 const uint CUT_LONG = 128u;
+// The record is combined and has the faces of a mesh (region/faces.glsl).
+const uint CUT_FACES = CUT_COMBINED | CUT_UNION;
 const uint CUT_COUNT_SHIFT = 8u;
 // The most surfaces of a long record, whose number is exact as a float.
 const uint LONG_SURFACES = 0xffffu;

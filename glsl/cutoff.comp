@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // One invocation a cutoff Gaussian writes its cutoff record: everything that the fragment stage needs to weight it. Where more
 // surfaces cut it than a record has room for, it also writes a long record behind those of all Gaussians.
+#define MESHES_BINDING 7
 #include "beam.glsl"
 #include "region/surface.glsl"
 #include "cut.glsl"
@@ -215,6 +216,7 @@ uint write_record(uint base, uint room, uint index, out uint depth) {
     uint at = base + CUT_HEADER;
     bool is_combined = COMBINED && LAYER.region.combined != 0u;
     bool is_union = !is_combined && LAYER.region.op == OP_OR && LAYER.region.surface_count > 1u;
+    bool has_faces = false;
     vec4 half_space;
     if (is_combined) {
         Rest rest = write_reduced(f, position, deviations, room);
@@ -225,7 +227,8 @@ uint write_record(uint base, uint room, uint index, out uint depth) {
             write_decided(base, rest.decided == 1u);
             return cutting;
         }
-        is_combined = !are_planes(base, rest.entries, is_union);
+        has_faces = MESHES && rest.has_faces;
+        is_combined = has_faces || !are_planes(base, rest.entries, is_union);
         if (is_combined) {
             at += ENTRY_VECTORS * rest.entries;
             half_space = cut_records.at[base + CUT_HEADER];
@@ -240,7 +243,7 @@ uint write_record(uint base, uint room, uint index, out uint depth) {
         cutting = write_list(f, position, deviations, is_union, room, at, half_space);
     }
     uint count = (at - base - CUT_HEADER) / (is_combined ? ENTRY_VECTORS : 1u);
-    uint flags = count << CUT_COUNT_SHIFT | (is_combined ? CUT_COMBINED : 0u);
+    uint flags = count << CUT_COUNT_SHIFT | (is_combined ? CUT_COMBINED : 0u) | (has_faces ? CUT_FACES : 0u);
     if (is_union && count == 1u && !front && CUT.region.mode == MODE_EXACT) {
         cut_records.at[at - 1u] = half_space; // not its complement: without CUT_UNION a record holds what is kept
     } else if (is_union) {
@@ -278,7 +281,7 @@ uint write_record(uint base, uint room, uint index, out uint depth) {
     }
 
     // A switch of zero asks for the exact form itself.
-    bool is_fitted = CUT.region.mode == MODE_EXACT && EYE.weight.form == FORM_AUTO && !front
+    bool is_fitted = !has_faces && CUT.region.mode == MODE_EXACT && EYE.weight.form == FORM_AUTO && !front
         && (beam ? EYE.weight.beam_switch > 0.0 : is_combined);
     float opacity = opacity_on_screen(f, gaussian);
     OpenStrip strip;

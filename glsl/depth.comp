@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // One invocation a splat finds how deep it is in each pixel, and how the clip changes that.
+#define MESHES_BINDING 7
 #include "beam.glsl"
 #include "cut.glsl"
 

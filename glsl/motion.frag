@@ -17,6 +17,7 @@ BUFFER(readonly, 7, Gaussian, earlier) // as edit.comp has it
 #include "splats.glsl"
 #include "mean_depth.glsl"
 #include "footprint.glsl"
+#define MESHES_BINDING 9
 #define SURFACES_BINDING 8 // those of the frame before, and behind them those of this one
 #include "region/surface.glsl"
 #include "region/answers.glsl"

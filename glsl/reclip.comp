@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // One workgroup a block between the clip's old and new surface finds the side of each of its Gaussians now, and whether
 // what the rasteriser holds of it has to change.
+#define MESHES_BINDING 9
 #include "beam.glsl"
 #include "reclip.glsl"
 #define SETS 4u // visible, cut, invisible, and those of which what the rasteriser holds changes

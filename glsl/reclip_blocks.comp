@@ -6,6 +6,7 @@ struct Params {
     uint fresh; // 1: the frame before knew no clip
 };
 #define PARAMS Params
+#define MESHES_BINDING 8
 #include "frame.glsl"
 #include "reclip.glsl"
 

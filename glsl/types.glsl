@@ -76,6 +76,8 @@ struct WeightData {
     float beam_switch; // sigma_max / Z above which the perspective-exact form is used
     uint cut_stride; // vec4s of a cutoff record
     uint long_strides; // room for long records behind those of all Gaussians, each a cut_stride
+    uint meshes; // where those of the region lie behind all records, in vec4s
+    uint pad[3]; // unused
 };
 
 // The values that are constant for an eye in a frame.
@@ -157,15 +159,16 @@ struct LayerData {
 
 // A surface of a region, in the units of the layer that it cuts.
 struct SurfaceData {
-    vec4 high; // SURFACE_PLANE: unit normal and distance; SURFACE_QUADRIC: gradient and value at the anchor
+    vec4 high; // SURFACE_PLANE: unit normal and distance; SURFACE_QUADRIC: gradient and value at the anchor; SURFACE_MESH: its middle
     vec4 low; // what rounding them to single precision lost
-    vec4 anchor; // SURFACE_QUADRIC: the point that its numbers are relative to; w unused
-    vec4 anchor_low; // what the rounding lost
-    vec4 diagonal; // SURFACE_QUADRIC: the factors of the coordinates' squares; w unused
-    vec4 across; // SURFACE_QUADRIC: half the factors of x y, x z and y z; w unused
+    vec4 anchor; // SURFACE_QUADRIC: the point that its numbers are relative to; SURFACE_MESH: how its first coordinate grows; w unused
+    vec4 anchor_low; // SURFACE_QUADRIC: what the rounding lost; SURFACE_MESH: how its second coordinate grows
+    vec4 diagonal; // SURFACE_QUADRIC: the factors of the coordinates' squares; SURFACE_MESH: how its third coordinate grows; w unused
+    vec4 across; // SURFACE_QUADRIC: half the factors of x y, x z and y z; SURFACE_MESH: bits of its hash, which no shader reads
     uint kind; // SURFACE_*
     uint operators; // how many answers on a stack it joins with those below, and from OPERATOR_SHIFT on a bit each: 1 for or
-    uint pad[2]; // unused
+    uint mesh; // SURFACE_MESH: its first quad
+    uint keeps_outside; // SURFACE_MESH: 1 where its outside is kept
 };
 
 // A Gaussian without its colour.
@@ -256,6 +259,7 @@ const uint MODE_RARA = 2u;
 const uint MODE_EXACT = 3u;
 const uint SURFACE_PLANE = 0u;
 const uint SURFACE_QUADRIC = 1u;
+const uint SURFACE_MESH = 2u;
 const uint OP_AND = 0u;
 const uint OP_OR = 1u;
 // The surfaces combine by their operators.

@@ -66,9 +66,9 @@ pub use rara_scene::PngCompression;
 #[doc(inline)]
 pub use rara_scene::{
     Aov, Bounds, Camera, Channel, Clip, ClipOp, Cue, Cues, Decay, DepthMap, ExactForm,
-    GaussianArrays, Gaussians, Layer, LayerState, Miss, Mode, Ndc, PhiForm, Picture, Placement,
-    Plane, Precision, Preset, Projection, Quadric, Raster, Scene, Setting, SettingKind, Settings,
-    ShFormat, Shape, Show, SortBy, Surface, TargetFormat, Training,
+    GaussianArrays, Gaussians, Layer, LayerState, Mesh, MeshReport, MeshRule, Miss, Mode, Ndc,
+    PhiForm, Picture, Placement, Plane, Precision, Preset, Projection, Quadric, Raster, Scene,
+    Setting, SettingKind, Settings, ShFormat, Shape, Show, SortBy, Surface, TargetFormat, Training,
 };
 pub use renderer::{
     ColorSpace, ConfiguredFrame, Cut, DepthDesc, ExpectedDepthDesc, FrameLimits, Kept, LayerEditor,

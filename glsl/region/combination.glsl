@@ -5,6 +5,7 @@
 #include "region/answers.glsl"
 #include "region/crossing.glsl"
 #include "region/entry.glsl"
+#include "region/face_mass.glsl"
 #include "region/lines.glsl"
 #include "region/share.glsl"
 
@@ -250,7 +251,15 @@ bool share_of_tile_surfaces(Line line, TileSurfaces surfaces, out float share) {
 bool combined_keeps(uint base, uint count, vec3 point) {
     uint stack = 0u;
     for (uint i = 0u; i < count; i++) {
-        stack = answered(stack, value_at(entry_of(base, i), point) >= 0.0, operators_of(base, i));
+        bool keeps;
+        if (MESHES && is_group(base, i)) {
+            Faces faces = faces_of(base, i);
+            keeps = faces_keep(base, faces, point);
+            i += faces.count;
+        } else {
+            keeps = value_at(entry_of(base, i), point) >= 0.0;
+        }
+        stack = answered(stack, keeps, operators_of(base, i));
     }
     return (stack & 1u) != 0u;
 }
@@ -293,7 +302,7 @@ float combined_weight(Sight s, uint base, uint flags, RecordSides sides, float s
         start = -front_z;
         end = NO_CROSSING;
         measure = MEASURE_FRONT;
-    } else {
+    } else if (!MESHES || (flags & CUT_FACES) != CUT_FACES) {
         bool is_list = LISTS_TOO && (flags & CUT_COMBINED) == 0u;
         uint open;
         float share = share_of_sides(line, base, count, is_list, sides, open);
@@ -306,10 +315,21 @@ float combined_weight(Sight s, uint base, uint flags, RecordSides sides, float s
     }
     // Most pixels do not come here. All lines of the direction begin on the half-space in front of the eye, where that counts.
     mat3 deviations = deviations_of(line);
-    vec3 h = is_chord ? vec3(1.0, 0.0, 0.0)
+    float width = 1.0;
+    if (MESHES && (flags & CUT_FACES) == CUT_FACES && !is_chord) {
+        vec3 squares = vec3(dot(deviations[0], deviations[0]), dot(deviations[1], deviations[1]), dot(deviations[2], deviations[2]));
+        width = sqrt(max(squares.y, squares.z) / max(squares.x, 1e-30));
+        if (measure == MEASURE_MASS && width > WIDTH_ONE && is_group(base, 0u)) {
+            Faces faces = faces_of(base, 0u);
+            if (faces.count + 1u == count && !faces.overlaps) {
+                return faces_share(base, faces, line.mean, deviations);
+            }
+        }
+    }
+    vec3 h = is_chord || width < WIDTH_LINES ? vec3(1.0, 0.0, 0.0)
         : has_front ? unit_of(front.xyz * deviations)
         : direction_through(line, deviations, base, count);
-    return clamp(measured_across(line, deviations, h, base, count, start, end, measure, front_z) / whole, 0.0, 1.0);
+    return clamp(measured_across(line, deviations, h, is_chord ? 0.0 : width, base, count, start, end, measure, front_z) / whole, 0.0, 1.0);
 }
 
 #endif

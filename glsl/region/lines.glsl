@@ -4,7 +4,7 @@
 #define RARA_REGION_LINES
 #include "region/answers.glsl"
 #include "region/crossing.glsl"
-#include "region/entry.glsl"
+#include "region/faces.glsl"
 #include "tail.glsl"
 
 // The stretch of a line between a surface's crossings, and whether what is kept lies in it.
@@ -54,11 +54,18 @@ float measured(uint base, uint count, vec3 at, vec3 direction, float start, floa
         float next = end;
         uint stack = 0u;
         for (uint i = 0u; i < count; i++) {
-            Stretch stretch = stretch_of(entry_of(base, i), at, direction);
-            next = stretch.start > t ? min(next, stretch.start) : next;
-            next = stretch.end > t ? min(next, stretch.end) : next;
-            // The side of what comes next on the line.
-            bool keeps = (t >= stretch.start && t < stretch.end) == stretch.between;
+            bool keeps;
+            if (MESHES && is_group(base, i)) {
+                Faces faces = faces_of(base, i);
+                keeps = faces_keep(base, faces, at, direction, t, next);
+                i += faces.count;
+            } else {
+                Stretch stretch = stretch_of(entry_of(base, i), at, direction);
+                next = stretch.start > t ? min(next, stretch.start) : next;
+                next = stretch.end > t ? min(next, stretch.end) : next;
+                // The side of what comes next on the line.
+                keeps = (t >= stretch.start && t < stretch.end) == stretch.between;
+            }
             stack = answered(stack, keeps, operators_of(base, i));
         }
         float here = measure_to(measure, next, front);
@@ -78,6 +85,15 @@ const vec2 LATTICE_TURN = vec2(0.8506508, 0.5257311);
 const float TURNS_LITTLE = 0.1;
 const float TURNS_NOT = 0.001;
 
+// How wide a pixel's part of a splat is to how long it is. Below the first a single line of sight stands for all, below the second nine by
+// a rule that is exact up to the fifth power of what varies across, below the third every second row and column of the lattice.
+const float WIDTH_ONE = 0.002;
+const float WIDTH_NINE = 0.01;
+const float WIDTH_LINES = 0.05;
+// The rule's places, and how its weights fall.
+const float NINE_STEP = 1.7320508;
+const float NINE_FALL = 0.4620981;
+
 // The unit vector of this direction, or that along the line.
 vec3 unit_of(vec3 v) {
     return dot(v, v) > 0.0 ? normalize(v) : vec3(1.0, 0.0, 0.0);
@@ -91,8 +107,9 @@ vec3 direction_through(Line line, mat3 deviations, uint base, uint count) {
     // The first turn finds the nearest surface, and the second one takes all in its direction.
     for (uint turn = 0u; turn < 2u; turn++) {
         sum = vec3(0.0);
+        mat3 map;
         for (uint i = 0u; i < count; i++) {
-            UnitSurface surface = entry_of(base, i);
+            UnitSurface surface = MESHES ? seen_surface(base, i, map) : entry_of(base, i);
             vec3 a = gradient_at(surface, line.mean) * deviations;
             float square = max(dot(a, a), 1e-30);
             float value = value_at(surface, line.mean);
@@ -108,8 +125,12 @@ vec3 direction_through(Line line, mat3 deviations, uint base, uint count) {
 // Crossings on lines of this direction move by no more than this for each deviation across it.
 float turn_of(Line line, mat3 deviations, vec3 direction, uint base, uint count) {
     float most = 0.0;
+    mat3 map;
     for (uint i = 0u; i < count; i++) {
-        UnitSurface surface = entry_of(base, i);
+        UnitSurface surface = MESHES ? seen_surface(base, i, map) : entry_of(base, i);
+        if (MESHES && entry_kind(base, i) == ENTRY_PLACE) {
+            return 1.0; // its faces may turn in any way
+        }
         vec3 a = gradient_at(surface, line.mean) * deviations;
         float along = abs(dot(a, direction));
         float bend = 0.0;
@@ -122,14 +143,23 @@ float turn_of(Line line, mat3 deviations, vec3 direction, uint base, uint count)
 }
 
 // The measure of what the surfaces keep of all lines of a direction among a line's deviations. `start` and `end` are counted from the mean.
-float measured_across(Line line, mat3 deviations, vec3 h, uint base, uint count, float start, float end, uint measure, float front) {
+// With a width these are lines of sight.
+float measured_across(Line line, mat3 deviations, vec3 h, float width, uint base, uint count, float start, float end, uint measure, float front) {
     vec3 direction = deviations * h;
     vec3 g = perpendicular(h);
     vec3 first = deviations * g;
     vec3 second = deviations * cross(h, g);
-    float turn = measure == MEASURE_LENGTH ? 0.0 : turn_of(line, deviations, h, base, count);
+    bool is_along = MESHES && width < WIDTH_LINES;
+    float turn = measure == MEASURE_LENGTH || is_along ? 0.0 : turn_of(line, deviations, h, base, count);
     float step = turn < TURNS_LITTLE ? 2.0 * LATTICE : LATTICE;
     int rows = turn < TURNS_NOT ? 0 : int(LATTICE_RADIUS / step) + 1;
+    float fall = 0.5;
+    if (is_along) {
+        bool are_nine = width < WIDTH_NINE;
+        step = are_nine ? NINE_STEP : step;
+        fall = are_nine ? NINE_FALL : fall;
+        rows = width < WIDTH_ONE ? 0 : are_nine ? 1 : int(LATTICE_RADIUS / step) + 1;
+    }
     float share = 0.0;
     float weights = 0.0;
     for (int row = -rows; row <= rows; row++) {
@@ -138,7 +168,7 @@ float measured_across(Line line, mat3 deviations, vec3 h, uint base, uint count,
             if (dot(at, at) > LATTICE_RADIUS * LATTICE_RADIUS) {
                 continue;
             }
-            float weight = exp(-0.5 * dot(at, at));
+            float weight = exp(-fall * dot(at, at));
             weights += weight;
             share += weight * measured(base, count, line.mean + at.x * first + at.y * second, direction, start, end, measure, front);
         }

@@ -14,8 +14,12 @@ BUFFER(readonly, SURFACES_BINDING, SurfaceData, surfaces)
 // True when a region has parts or a surface that bends: without, there is no code for either.
 layout(constant_id = 8) const bool COMBINED = false;
 
+// True when a region has the inside of a mesh.
+layout(constant_id = 15) const bool MESHES = false;
+
 #include "region/plane.glsl"
 #include "region/quadric.glsl"
+#include "region/mesh.glsl"
 
 // Returns the answer of the shape that a surface is. Each kind has a line here, which the build holds to the list of kinds in
 // types.glsl, and a shape without the answer does not compile. `none` is never asked for: it stands where no surface bends.
@@ -23,6 +27,8 @@ layout(constant_id = 8) const bool COMBINED = false;
     switch (surfaces.at[surface].kind) { \
     case SURFACE_QUADRIC: \
         return COMBINED ? quadric_##question arguments : none; \
+    case SURFACE_MESH: \
+        return MESHES ? mesh_##question arguments : none; \
     default: /* SURFACE_PLANE */ \
         return plane_##question arguments; \
     }

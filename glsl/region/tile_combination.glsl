@@ -47,6 +47,8 @@ uint surface_side(TileSight tile, TilePoints points, UnitSurface surface) {
     return plane.low > reach * tile.det.z ? SIDE_VISIBLE : plane.high < -reach * tile.det.z ? SIDE_INVISIBLE : SIDE_CUTOFF;
 }
 
+#ifdef RARA_SUBGROUP
+
 // The side of a tile; the record gets those of its surfaces.
 uint combination_side(inout Record record, uint flags, vec2 delta, vec2 middle) {
     if ((flags & CUT_FRONT) != 0u) {
@@ -83,6 +85,62 @@ uint combination_side(inout Record record, uint flags, vec2 delta, vec2 middle) 
     record.surfaces.answers = are_known && bitCount(record.sides.cutting) <= 2 ? answers : 0u;
     // No operator drops what would be kept of less, so that the other combinations lie between.
     return (answers & 1u) != 0u ? SIDE_VISIBLE : (answers & 8u) == 0u ? SIDE_INVISIBLE : SIDE_CUTOFF;
+}
+
+#endif
+
+// The side of a tile in a splat that a mesh cuts and nothing else does: that of the mean, if no face comes near what counts.
+uint faces_side(uint base, uint flags, TileSight tile) {
+    uint count = flags >> CUT_COUNT_SHIFT;
+    if (!is_group(base, 0u)) {
+        return SIDE_CUTOFF;
+    }
+    Faces faces = faces_of(base, 0u);
+    if (faces.count + 1u != count) {
+        return SIDE_CUTOFF;
+    }
+    if ((flags & CUT_FRONT) != 0u) {
+        // Where the eye is behind the mean, more than half of the splat is in front of it, and what counts is where it would be otherwise.
+        ZRange front = z_range(tile, cut_records.at[base + CUT_HEADER + ENTRY_VECTORS * count]);
+        if (!(front.low >= 0.0)) {
+            return SIDE_CUTOFF;
+        }
+    }
+    TilePoints points = tile_points(tile, TILE_MARGIN * (CLIP_MODE == MODE_RARA ? push.params.sigma : PHI_ONE));
+    vec3 middle = faces.map * points.mean;
+    vec3 along = points.deviations * (faces.map * points.along);
+    mat3 rows = transpose(faces.map);
+    vec3 reach = abs(along) + points.aside * vec3(length(rows[0]), length(rows[1]), length(rows[2]));
+    uvec4 head = faces.is_walked ? floatBitsToUint(cut_records.at[faces.root]) : uvec4(0u);
+    uint node = 0u;
+    uint face = faces.first;
+    uint left = faces.is_walked ? 0u : faces.count;
+    for (;; face++, left--) {
+        while (left == 0u && node < head.x) {
+            vec4 low = cut_records.at[faces.root + 1u + 2u * node];
+            vec4 high = cut_records.at[faces.root + 2u + 2u * node];
+            vec3 from = abs(0.5 * (low.xyz + high.xyz) - faces.centre - middle);
+            bool is_near = all(lessThanEqual(from, reach + 0.5 * (high.xyz - low.xyz)));
+            uint leaf = floatBitsToUint(high.w);
+            left = is_near ? leaf & 7u : 0u;
+            face = leaf >> 3;
+            node = is_near ? node + 1u : floatBitsToUint(low.w);
+        }
+        if (left == 0u) {
+            break;
+        }
+        Face here = faces.is_walked ? walked_face(faces, head, face) : face_of(base, face);
+        vec3 low = min(min(here.a, here.b), here.c) - middle;
+        vec3 high = max(max(here.a, here.b), here.c) - middle;
+        vec3 normal = cross(here.b - here.a, here.c - here.a);
+        float across = abs(dot(normal, along)) + points.aside * length(normal * faces.map);
+        bool is_far = any(greaterThan(low, reach)) || any(lessThan(high, -reach)) || abs(dot(normal, here.a - middle)) > 1.0001 * across;
+        // A bound that is no number settles nothing.
+        if (!is_far) {
+            return SIDE_CUTOFF;
+        }
+    }
+    return faces_keep(base, faces, points.mean) ? SIDE_VISIBLE : SIDE_INVISIBLE;
 }
 
 #endif

@@ -195,9 +195,7 @@ uint planes_side(Record record, uint flags, vec2 delta, vec2 middle) {
     return visible ? SIDE_VISIBLE : invisible ? SIDE_INVISIBLE : SIDE_CUTOFF;
 }
 
-#ifdef RARA_SUBGROUP
 #include "region/tile_combination.glsl"
-#endif
 
 // The side of the tile with this middle, px, in a splat that is cut.
 uint tile_side(vec3 linear, vec3 curvature, inout Record record, vec4 centre_conic, float conic_z, vec2 middle) {
@@ -216,6 +214,9 @@ uint tile_side(vec3 linear, vec3 curvature, inout Record record, vec4 centre_con
         return SIDE_CUTOFF; // lines of sight beside the ellipsoid are kept or dropped wherever they are
     }
     bool is_combined = COMBINED && (flags & CUT_COMBINED) != 0u;
+    if (MESHES && (flags & CUT_FACES) == CUT_FACES) {
+        return faces_side(record_base(record), flags, tile_sight(record, delta, middle));
+    }
 #ifdef RARA_SUBGROUP
     if (is_combined) {
         return combination_side(record, flags, delta, middle);

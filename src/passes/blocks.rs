@@ -22,7 +22,7 @@ fn record(recording: &mut Recording<'_, '_, EyePlan>) {
     let buffers = buffers!(blocks {
         shared::MEMORY => [frame],
         SCENE => [blocks],
-        clip::MEMORY => [surfaces, clip_sides, shortlists],
+        clip::MEMORY => [surfaces, clip_sides, shortlists, meshes],
         MEMORY => [block_sides],
     });
     recording.dispatch(buffers, (), groups_of_blocks(recording.plan));

@@ -24,7 +24,7 @@ fn record(recording: &mut Recording<'_, '_, EyePlan>) {
         shared::MEMORY => [frame],
         SCENE => [gaussians],
         block_list::MEMORY => [block_list],
-        clip::MEMORY => [surfaces, clip_sides, clip_masks, shortlists],
+        clip::MEMORY => [surfaces, clip_sides, clip_masks, shortlists, meshes],
         MEMORY => [masks, block_counts],
     });
     recording.dispatch(buffers, (), looked_at());

@@ -31,6 +31,8 @@ memory! { CutPlan:
         let most = u64::from(plan.data.scene.layer_count) * u64::from(plan.layers.most_surfaces());
         most * size_of::<SurfaceData>() as u64
     };
+    /// The meshes that these are the insides of, each with the hierarchy of its faces; empty without any.
+    meshes: |plan| size_of_val(plan.layers.meshes()) as u64;
     /// The clip's sides of the blocks; empty without a clip.
     clip_sides: |plan| when_clipped(plan, 4 * plan.blocks());
     /// The clip's masks of the blocks; empty without a clip.
@@ -54,14 +56,14 @@ fn when_clipped(plan: &CutPlan, bytes: u64) -> u64 {
 fn record(recording: &mut Recording<'_, '_, CutPlan>) {
     let buffers = buffers!(clip_blocks {
         SCENE => [blocks],
-        MEMORY => [cut, surfaces, clip_sides, shortlists],
+        MEMORY => [cut, surfaces, clip_sides, shortlists, meshes],
     });
     recording.dispatch(buffers, (), groups_of_blocks(recording.plan));
     let [cut, sides, list] = [&MEMORY.cut, &MEMORY.clip_sides, &MEMORY.clip_list].map(named);
     block_list::record(recording, cut, sides, list);
     let buffers = buffers!(clip {
         SCENE => [gaussians],
-        MEMORY => [cut, surfaces, clip_masks, shortlists];
+        MEMORY => [cut, surfaces, clip_masks, shortlists, meshes];
         block_list: &MEMORY.clip_list,
     });
     recording.dispatch(buffers, (), listed(list));

@@ -27,20 +27,22 @@ pub(crate) static STAGE_OF_RECLIP: Stage<EyePlan> = Stage {
 };
 
 memory! { EyePlan:
+    /// The records of cutoff Gaussians and, behind them, the meshes of the clip, as pixels walk them.
     cut_records: |plan| match plan.cut.cuts() {
-        true => {
-            let weight = plan.data.weight;
-            16 * u64::from(weight.cut_stride) * (plan.gaussians() + u64::from(weight.long_strides))
-        }
+        true => 16 * u64::from(plan.data.weight.meshes) + size_of_val(plan.cut.layers.meshes()) as u64,
         false => 0,
     };
 }
 
 fn record(recording: &mut Recording<'_, '_, EyePlan>) {
+    if recording.plan.cut.layers.have_meshes() {
+        let behind = 16 * u64::from(recording.plan.data.weight.meshes);
+        recording.copy(&clip::MEMORY.meshes, &MEMORY.cut_records, behind);
+    }
     let buffers = buffers!(cutoff {
         shared::MEMORY => [frame, counts],
         SCENE => [gaussians],
-        clip::MEMORY => [surfaces, shortlists],
+        clip::MEMORY => [surfaces, shortlists, meshes],
         compact::MEMORY => [cutoffs],
         MEMORY => [cut_records],
     });

@@ -32,7 +32,7 @@ fn record(recording: &mut Recording<'_, '_, EyePlan>) {
         shared::MEMORY => [frame, counts],
         SCENE => [gaussians],
         compact::MEMORY => [splat_gaussians],
-        clip::MEMORY => [surfaces, shortlists],
+        clip::MEMORY => [surfaces, shortlists, meshes],
         project::MEMORY => [splats],
     });
     recording.dispatch(buffers, (), counted!(project_groups));
@@ -45,6 +45,7 @@ pub(crate) fn draw(plan: &EyePlan, attachments: Attachments) -> Draw<splat_depth
         clip_mode: weight.mode,
         several: weight.several,
         combined: weight.combined,
+        meshes: weight.meshes,
         many: weight.many,
         decay: weight.decay,
         miss: weight.miss,

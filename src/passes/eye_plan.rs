@@ -326,7 +326,8 @@ fn weight_data(cut: &CutPlan, settings: &Settings, switch: f32) -> Result<Weight
     // Shaders count the records' elements in 32 bits.
     let records = cut.gaussians() + u64::from(long_strides);
     let has_room = cut_stride == 0 || records <= u64::from(limits::MAX_RECORDS);
-    if !has_room || records * u64::from(cut_stride) > u64::from(u32::MAX) {
+    let meshes = records * u64::from(cut_stride);
+    if !has_room || meshes + layers.meshes().len() as u64 > u64::from(u32::MAX) {
         return Err(Error::Invalid(format!(
             "{} cut by {} are beyond what a frame can address; use fewer or split the scene",
             counted(cut.data.scene.gaussian_count, "Gaussian"),
@@ -342,6 +343,8 @@ fn weight_data(cut: &CutPlan, settings: &Settings, switch: f32) -> Result<Weight
         beam_switch: switch,
         cut_stride,
         long_strides,
+        meshes: meshes as u32,
+        ..bytemuck::Zeroable::zeroed()
     })
 }
 

@@ -14,10 +14,16 @@ use rara_base::limits;
 use rara_scene::camera::Camera;
 use rara_scene::clip::Clip;
 
+/// The meshes of surfaces as shaders read them, one behind the other.
+pub(super) type MeshQuads = Vec<[u32; 4]>;
+
+/// The most entries of a record that a mesh needs: it is four planes, or a walk of three entries.
+const MESH_ENTRIES: u32 = 4;
+
 /// The layers of a cut and their surfaces. A copy has the same ones.
 #[derive(Debug, Clone)]
 pub(crate) struct CutLayers {
-    lists: Arc<(Vec<CutLayer>, Vec<SurfaceData>)>,
+    lists: Arc<(Vec<CutLayer>, Vec<SurfaceData>, MeshQuads)>,
 }
 
 impl CutLayers {
@@ -31,6 +37,7 @@ impl CutLayers {
     ) -> Result<Self> {
         let has_region = region.mode != types::MODE_NONE;
         let (mut layers, mut surfaces) = (Vec::<CutLayer>::with_capacity(scene.len()), Vec::new());
+        let mut meshes = region::Meshes::default();
         for (index, layer) in scene.iter().enumerate() {
             let mut data = CutLayer {
                 content: LayerContent {
@@ -59,7 +66,7 @@ impl CutLayers {
                     data.region.first_surface = surfaces.len() as u32;
                     let corners = layer.corners.map(|corner| corner.as_dvec3());
                     let of_layer = clip.in_scene(&layer.placement());
-                    surfaces.extend(region::surfaces(&of_layer, corners));
+                    surfaces.extend(region::surfaces(&of_layer, corners, &mut meshes));
                     data.region.surface_count = surfaces.len() as u32 - data.region.first_surface;
                     data.region.combined = clip.is_general().into();
                 }
@@ -67,7 +74,7 @@ impl CutLayers {
             layers.push(data);
         }
         Ok(Self {
-            lists: Arc::new((layers, surfaces)),
+            lists: Arc::new((layers, surfaces, meshes.quads)),
         })
     }
 
@@ -79,6 +86,16 @@ impl CutLayers {
     /// The surfaces of their regions.
     pub(crate) fn surfaces(&self) -> &[SurfaceData] {
         &self.lists.1
+    }
+
+    /// The meshes that some of these are.
+    pub(crate) fn meshes(&self) -> &[[u32; 4]] {
+        &self.lists.2
+    }
+
+    /// True when there is one.
+    pub(crate) fn have_meshes(&self) -> bool {
+        !self.meshes().is_empty()
     }
 
     /// The most surfaces that a layer's region has.
@@ -99,19 +116,46 @@ impl CutLayers {
                 0 => (1, limits::RECORD_PLANES),
                 _ => (types::ENTRY_VECTORS, limits::RECORD_SURFACES),
             };
-            [each * surface_count.min(room), each * surface_count]
+            let entries = self.entries(&layer.region);
+            // A mesh's faces take the room that there is.
+            let short = if entries > surface_count {
+                room
+            } else {
+                entries.min(room)
+            };
+            [each * short, each * entries]
         });
         vectors.fold([0; 2], |[a, b], [c, d]| [a.max(c), b.max(d)])
     }
 
+    /// How many entries of a record the surfaces of a region need at most.
+    fn entries(&self, region: &LayerRegion) -> u32 {
+        let first = region.first_surface as usize;
+        let own = &self.surfaces()[first..first + region.surface_count as usize];
+        let of_surface = |surface: &SurfaceData| match surface.kind {
+            types::SURFACE_MESH => MESH_ENTRIES,
+            _ => 1,
+        };
+        own.iter().map(of_surface).sum()
+    }
+
+    /// The most entries that a record needs.
+    fn most_entries(&self) -> u32 {
+        let entries = self
+            .layers()
+            .iter()
+            .map(|layer| self.entries(&layer.region));
+        entries.max().unwrap_or(0)
+    }
+
     /// True when more than one surface may cut a splat.
     pub(crate) fn are_several(&self) -> bool {
-        self.most_surfaces() > 1
+        self.most_entries() > 1
     }
 
     /// True when more than `RECORD_SURFACES` may cut a splat.
     pub(crate) fn are_many(&self) -> bool {
-        self.most_surfaces() > limits::RECORD_SURFACES
+        self.most_entries() > limits::RECORD_SURFACES
     }
 
     /// True when splats of a layer are weighed as combinations of surfaces that may bend.

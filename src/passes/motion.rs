@@ -99,7 +99,9 @@ impl Sight {
         let before = before.unwrap_or(self);
         let since = self.shown_by(before);
         let kept_before = before.kept.surfaces().len();
-        let tells = kept_before + self.kept.surfaces().len() <= tiles::MOTION_SURFACES;
+        let has_room = kept_before + self.kept.surfaces().len() <= tiles::MOTION_SURFACES;
+        let have_meshes = self.kept.have_meshes() || before.kept.have_meshes();
+        let tells = has_room && !have_meshes;
         let pairs = self.layers.iter().zip(before.layers.iter()).enumerate();
         pairs.map(move |(at, (now, was))| {
             let stays =
@@ -132,6 +134,7 @@ pub(crate) fn draw(plan: &EyePlan, attachments: Attachments) -> Draw<motion::Pro
         written_depth: plan.way.writes_depth,
         strongest: false, // nothing lies behind them
         layered: plan.cut.layers.layers().len() > 1,
+        meshes: false,  // nobody asks whether they kept something before
         combined: true, // what the frame before had follows later
     };
     Draw::new(
@@ -163,6 +166,7 @@ pub(crate) fn record(
         gaussians,
         earlier: earlier.as_ref().unwrap_or(gaussians),
         surfaces: b.get(&tiles::MEMORY.motion_surfaces),
+        meshes: b.get(&tiles::MEMORY.motion_surfaces), // no shader reads it
     };
     let params = motion::Params {
         origin,

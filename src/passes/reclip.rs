@@ -56,7 +56,7 @@ fn record_reclip(recording: &mut Recording<'_, '_, EyePlan>) {
         SCENE => [blocks],
         blocks::MEMORY => [block_sides],
         classify::MEMORY => [block_counts],
-        clip::MEMORY => [surfaces, shortlists],
+        clip::MEMORY => [surfaces, shortlists, meshes],
         MEMORY => [revisits, reclips],
     });
     // No clip may have changed the splats yet.
@@ -69,7 +69,7 @@ fn record_reclip(recording: &mut Recording<'_, '_, EyePlan>) {
     let buffers = buffers!(reclip {
         shared::MEMORY => [frame],
         SCENE => [gaussians],
-        clip::MEMORY => [surfaces, shortlists],
+        clip::MEMORY => [surfaces, shortlists, meshes],
         block_list::MEMORY => [block_list],
         blocks::MEMORY => [block_sides],
         classify::MEMORY => [masks],

@@ -1,5 +1,7 @@
 //! What a stage records with: its commands go into a command buffer, or, dry, leave the pipelines that they need.
 
+use ash::vk;
+
 use crate::passes::owner::Owner;
 use crate::passes::pipelines::{FromPlan, Pipeline, PipelineKey};
 use crate::passes::resources::{HostDepth, Resources};
@@ -113,6 +115,19 @@ impl<'a, 'r, P: Owner> Recording<'a, 'r, P> {
         if let Target::Commands(recorder, resources) = &mut self.target {
             let buffer = resources.buffer(name.into());
             recorder.fill(buffer, 0, buffer.size(), value);
+        }
+    }
+
+    /// Copies a buffer into another one, from a byte of that on.
+    pub(super) fn copy(&mut self, from: impl Into<P::Name>, to: impl Into<P::Name>, at: u64) {
+        if let Target::Commands(recorder, resources) = &mut self.target {
+            let [from, to] = [from.into(), to.into()].map(|name| resources.buffer(name));
+            let whole = vk::BufferCopy {
+                src_offset: 0,
+                dst_offset: at,
+                size: from.size(),
+            };
+            recorder.copy(from, to, &[whole]);
         }
     }
 

@@ -1,14 +1,18 @@
 //! The regions that the clip keeps, as the shaders read them: what all layers' regions have in common, and the surfaces of
 //! one.
 
-use glam::DVec3;
+use std::collections::HashMap;
 
+use glam::{DMat3, DVec3};
+
+use crate::passes::layers::MeshQuads;
 use crate::types::{self, RegionData};
 use rara_base::error::Result;
 use rara_base::limits;
 use rara_gpu::DeviceShape;
 use rara_scene::clip::postfix::postfix;
-use rara_scene::clip::{Clip, ClipOp, Plane, Quadric, Surface};
+use rara_scene::clip::{Clip, ClipOp, Inside, Plane, Quadric, Surface};
+use rara_scene::mesh::Mesh;
 use rara_scene::settings::{Mode, Settings};
 
 /// The largest distance of a surface that is not taken for infinity, in the layer's units. It lies beyond every splat: a power of two
@@ -63,18 +67,47 @@ pub(super) fn op(clip: &Clip) -> u32 {
 /// The surfaces of a clip, which is given in the space of the layer that it cuts, whose centres lie between two corners.
 /// There are no repetitions, since cutting twice is cutting once, and the order is their own, so that no bit of a picture
 /// depends on the order in which they are given.
-pub(super) fn surfaces(clip: &Clip, corners: [DVec3; 2]) -> Vec<types::SurfaceData> {
+pub(super) fn surfaces(
+    clip: &Clip,
+    corners: [DVec3; 2],
+    meshes: &mut Meshes,
+) -> Vec<types::SurfaceData> {
     let steps = postfix(clip);
     steps
         .iter()
-        .map(|step| packed(&step.surface, &step.operators, corners))
+        .map(|step| packed(&step.surface, &step.operators, corners, meshes))
         .collect()
 }
 
-fn packed(surface: &Surface, operators: &[ClipOp], corners: [DVec3; 2]) -> types::SurfaceData {
+/// The meshes of a cut, each of which is there once.
+#[derive(Debug, Default)]
+pub(super) struct Meshes {
+    pub(super) quads: MeshQuads,
+    first: HashMap<Mesh, u32>,
+}
+
+impl Meshes {
+    /// The first quad of a mesh.
+    fn place(&mut self, mesh: &Mesh) -> u32 {
+        let quads = &mut self.quads;
+        *self.first.entry(mesh.clone()).or_insert_with(|| {
+            let first = quads.len() as u32;
+            quads.extend(mesh.packed().quads);
+            first
+        })
+    }
+}
+
+fn packed(
+    surface: &Surface,
+    operators: &[ClipOp],
+    corners: [DVec3; 2],
+    meshes: &mut Meshes,
+) -> types::SurfaceData {
     let mut data = match surface {
         Surface::Plane(plane) => plane_data(plane),
         Surface::Quadric(quadric) => quadric_data(quadric, corners),
+        Surface::Inside(inside) => mesh_data(inside, meshes.place(inside.mesh())),
     };
     data.operators = operators.len() as u32;
     for (place, op) in operators.iter().enumerate() {
@@ -114,6 +147,30 @@ fn quadric_data(quadric: &Quadric, [low, high]: [DVec3; 2]) -> types::SurfaceDat
         diagonal,
         across,
         kind: types::SURFACE_QUADRIC,
+        ..bytemuck::Zeroable::zeroed()
+    }
+}
+
+/// The inside of a mesh, or its outside: the map to its own space, whose middle is where it is zero.
+fn mesh_data(inside: &Inside, first: u32) -> types::SurfaceData {
+    let (mesh, placement) = (inside.mesh(), inside.placement());
+    let middle = placement.to_world(mesh.centre());
+    let turn = DMat3::from_quat(placement.rotation()).transpose();
+    let rows = turn * (1.0 / (placement.scale() * mesh.scale()));
+    let [high, low] = halves(middle.extend(0.0).to_array());
+    let row = |at: usize| rows.row(at).extend(0.0).as_vec4().to_array();
+    let hash = mesh.content_hash();
+    types::SurfaceData {
+        high,
+        low,
+        anchor: row(0),
+        anchor_low: row(1),
+        diagonal: row(2),
+        // The hash is there so that two that differ are told apart.
+        across: [hash as u32, (hash >> 32) as u32, 0, 0].map(f32::from_bits),
+        kind: types::SURFACE_MESH,
+        mesh: first,
+        keeps_outside: inside.keeps_outside().into(),
         ..bytemuck::Zeroable::zeroed()
     }
 }

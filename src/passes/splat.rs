@@ -30,6 +30,7 @@ pub(crate) fn draw(plan: &EyePlan, attachments: Attachments) -> Draw<splat::Prog
         clip_mode: weight.mode,
         several: weight.several,
         combined: weight.combined,
+        meshes: weight.meshes,
         many: weight.many,
         decay: weight.decay,
         miss: weight.miss,

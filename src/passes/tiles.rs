@@ -97,6 +97,7 @@ fn pipeline(plan: &EyePlan, list: List) -> Pipeline<tiles::Program> {
         clip_mode: weight.mode,
         several: weight.several && !is_one_of_two,
         combined: weight.combined && !is_one_of_two,
+        meshes: weight.meshes && !is_one_of_two,
         many: weight.many && !is_one_of_two,
         decay: match plan.has_soft_depth() {
             true => plan.laws.decay,

@@ -29,18 +29,18 @@ macro_rules! layered {
 }
 
 // Without a clip the shaders hold no clip code.
-layered!(CutPlan: clip_blocks, combined: is_combined, shortlisted: is_shortlisted);
-layered!(CutPlan: clip, combined: is_combined, shortlisted: is_shortlisted, local_size_x: mask_invocations);
+layered!(CutPlan: clip_blocks, combined: is_combined, meshes: has_meshes, shortlisted: is_shortlisted);
+layered!(CutPlan: clip, combined: is_combined, meshes: has_meshes, shortlisted: is_shortlisted, local_size_x: mask_invocations);
 constants!(CutPlan: block_list, local_size_x: list_invocations);
 constants!(EyePlan: block_list, local_size_x: list_invocations);
-layered!(EyePlan: blocks, clip: EyePlan::view_is_clipped, combined: is_combined, shortlisted: is_shortlisted);
-layered!(EyePlan: classify, clip: EyePlan::view_is_clipped, combined: is_combined, shortlisted: is_shortlisted, local_size_x: mask_invocations);
+layered!(EyePlan: blocks, clip: EyePlan::view_is_clipped, combined: is_combined, meshes: has_meshes, shortlisted: is_shortlisted);
+layered!(EyePlan: classify, clip: EyePlan::view_is_clipped, combined: is_combined, meshes: has_meshes, shortlisted: is_shortlisted, local_size_x: mask_invocations);
 layered!(EyePlan: compact_scan, local_size_x: list_invocations);
 layered!(EyePlan: compact, cuts: EyePlan::view_is_cut);
-layered!(EyePlan: cutoff, has_terms: is_for_cpu, combined: is_combined, several: is_several, many: is_many, shortlisted: is_shortlisted);
-layered!(EyePlan: depth, combined: is_combined, shortlisted: is_shortlisted);
-layered!(EyePlan: reclip_blocks, combined: is_combined, shortlisted: is_shortlisted);
-layered!(EyePlan: reclip, combined: is_combined, shortlisted: is_shortlisted, local_size_x: mask_invocations);
+layered!(EyePlan: cutoff, has_terms: is_for_cpu, combined: is_combined, meshes: has_meshes, several: is_several, many: is_many, shortlisted: is_shortlisted);
+layered!(EyePlan: depth, combined: is_combined, meshes: has_meshes, shortlisted: is_shortlisted);
+layered!(EyePlan: reclip_blocks, combined: is_combined, meshes: has_meshes, shortlisted: is_shortlisted);
+layered!(EyePlan: reclip, combined: is_combined, meshes: has_meshes, shortlisted: is_shortlisted, local_size_x: mask_invocations);
 constants!(EyePlan: reclip_scan, local_size_x: list_invocations);
 layered!(EyePlan: recut, tiles: EyePlan::is_tiled, quads: EyePlan::needs_quads, rects: EyePlan::keeps_rects);
 
@@ -50,6 +50,10 @@ fn is_layered(plan: &impl ListsBlocks) -> bool {
 
 fn is_combined(plan: &impl ListsBlocks) -> bool {
     plan.cut().layers.are_combined()
+}
+
+fn has_meshes(plan: &impl ListsBlocks) -> bool {
+    plan.cut().layers.have_meshes()
 }
 
 fn is_shortlisted(plan: &impl ListsBlocks) -> bool {

@@ -25,6 +25,8 @@ pub(crate) struct Weight {
     pub(crate) several: bool,
     /// True when splats may be weighed as combinations of surfaces that bend.
     pub(crate) combined: bool,
+    /// True when the faces of a mesh may cut a splat.
+    pub(crate) meshes: bool,
     /// True when more than `RECORD_SURFACES` may cut a splat.
     pub(crate) many: bool,
     /// `DECAY_*`.
@@ -44,6 +46,7 @@ impl Weight {
             mode: when(cuts, mode),
             several: cuts && plan.cut.layers.are_several(),
             combined: cuts && plan.cut.layers.are_combined(),
+            meshes: cuts && plan.cut.layers.have_meshes(),
             many: cuts && plan.cut.layers.are_many(),
             decay: when(cuts, laws.decay),
             miss: when(cuts && mode == types::MODE_RARA, laws.miss),

@@ -6,7 +6,9 @@ use super::combined::CombinedCut;
 use super::exact::{AffinePlane, Beam};
 use super::footprint::Footprint;
 use super::real::{Real, Vec3};
-use super::region::{self, Combination, HalfSpace, RegionRest, Side, Symmetric, UnitSurface};
+use super::region::{
+    self, Combination, HalfSpace, RegionRest, RestSurface, Side, Symmetric, UnitSurface,
+};
 use super::view::ViewTransform;
 use rara_base::limits::RECORD_SURFACES;
 use rara_scene::Gaussians;
@@ -81,7 +83,9 @@ pub fn cutoff<T: Real>(
     Some(match (reduced, op) {
         (RegionRest::Decided(kept), _) => SplatCut::Decided(kept),
         (RegionRest::Cut(surfaces), Some(op)) => {
-            let half_spaces = surfaces.iter().map(|(surface, _)| surface.half_space);
+            let half_spaces = surfaces
+                .iter()
+                .map(|(surface, _)| surface.nearest().half_space);
             let half_spaces = half_spaces.collect();
             of_planes(&gaussian, view, half_spaces, op)
         }
@@ -93,7 +97,7 @@ pub fn cutoff<T: Real>(
 fn of_combination<T: Real>(
     gaussian: &GaussianInView<'_, T>,
     view: &ViewTransform<T>,
-    surfaces: Vec<(UnitSurface<T>, Vec<ClipOp>)>,
+    surfaces: Vec<(RestSurface<T>, Vec<ClipOp>)>,
 ) -> SplatCut<T> {
     let &GaussianInView {
         footprint,
@@ -155,7 +159,8 @@ fn of_planes<T: Real>(
             let surfaces = surfaces.map(|(number, half_space)| {
                 let bend = Symmetric::zero();
                 let operators = if number == 0 { vec![] } else { vec![op] };
-                (UnitSurface { half_space, bend }.scaled(), operators)
+                let surface = UnitSurface { half_space, bend }.scaled();
+                (RestSurface::Smooth(surface), operators)
             });
             of_combination(gaussian, view, surfaces.collect())
         }

@@ -8,7 +8,9 @@ use rara_base::limits;
 use rara_base::setters;
 use rara_gpu::DeviceShape;
 use rara_scene::camera::Camera;
-use rara_scene::clip::{Clip, ClipOp, Plane, Quadric, Surface};
+use rara_scene::clip::{Clip, ClipOp, Inside, Plane, Quadric, Surface};
+use rara_scene::mesh::{MOST_FACES, Mesh, MeshRule, shapes};
+use rara_scene::placement::Placement;
 use rara_scene::precision::ShFormat;
 use rara_scene::settings::{Mode, Settings};
 
@@ -30,6 +32,8 @@ setters! {
         pub planes: u32,
         /// Surfaces of a clip that bends or combines; 0 for none.
         pub surfaces: u32,
+        /// Faces of the meshes whose insides a clip has; 0 for none.
+        pub faces: u32,
         /// The settings that frames have, each with every kind of clip: modes, rasters, what is shown and with which laws.
         pub settings: Vec<Settings>,
         /// Pairs of tile and splat, for which there is then exactly this room: a frame with more has coarse lists, the same
@@ -53,6 +57,7 @@ impl FrameLimits {
             sh_format: ShFormat::default(),
             planes: 6,
             surfaces: 0,
+            faces: 0,
             settings: modes.map(|mode| Settings::default().mode(mode)).to_vec(),
             pairs: None,
         }
@@ -88,6 +93,12 @@ impl FrameLimits {
                 Clip::MAX_SURFACES
             ));
         }
+        if self.faces as usize > MOST_FACES {
+            return refuse(format!(
+                "faces is {}: a mesh has {MOST_FACES} at most",
+                self.faces
+            ));
+        }
         if let Some(pairs) = self.pairs.filter(|&pairs| pairs > pair_room::MOST) {
             return refuse(format!(
                 "pairs is {pairs}: there is room for {} at most",
@@ -116,6 +127,13 @@ impl FrameLimits {
         };
         for count in counts([1, long, many, most, most], most) {
             clips.push(spheres(count)?);
+        }
+        if self.faces > 0 {
+            let alone = Clip::of([mesh(self.faces)?], ClipOp::And);
+            let beside = counts([1, long, many, most, most], most).map(spheres);
+            let beside = beside.collect::<Result<Vec<_>>>()?.into_iter();
+            clips.extend(beside.map(|spheres| Clip::joined([spheres, alone.clone()], ClipOp::And)));
+            clips.push(alone);
         }
         Ok(clips)
     }
@@ -146,6 +164,15 @@ fn spheres(count: u32) -> Result<Clip> {
         .map(|index| Ok(Surface::Quadric(sphere(index)?)))
         .collect::<Result<_>>()?;
     Ok(Clip::of(spheres, ClipOp::And))
+}
+
+/// The inside of a mesh of so many faces or a few more.
+fn mesh(faces: u32) -> Result<Inside> {
+    const ALONG: u32 = 16;
+    let around = faces.div_ceil(2 * ALONG).max(3);
+    let (vertices, faces) = shapes::torus(around, ALONG);
+    let mesh = Mesh::from_triangles(&vertices, &faces, MeshRule::Winding)?; // which is not checked
+    Ok(Inside::new(mesh, Placement::IDENTITY))
 }
 
 #[cfg(test)]

@@ -79,6 +79,27 @@ impl Placement {
         }
     }
 
+    /// The placement of what is placed so in a scene that is placed in turn.
+    pub(crate) fn placed(&self, scene: &Self) -> Result<Self> {
+        Self::new(
+            scene.to_world(self.position),
+            scene.rotation * self.rotation,
+            scene.scale * self.scale,
+        )
+    }
+
+    /// The placement of the same thing in the space of a scene that has another placement.
+    pub(crate) fn in_scene(&self, scene: &Self) -> Self {
+        if *scene == Self::IDENTITY {
+            return *self; // to the bit
+        }
+        Self {
+            position: scene.to_scene(self.position),
+            rotation: (scene.rotation.inverse() * self.rotation).normalize(),
+            scale: self.scale / scene.scale,
+        }
+    }
+
     /// A point of the scene in the world.
     pub fn to_world(&self, point: DVec3) -> DVec3 {
         self.position + self.rotation * (self.scale * point)

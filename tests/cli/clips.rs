@@ -4,7 +4,7 @@ use std::fs;
 
 use rara::Picture;
 
-use super::{document, done, folder, line, refused, scene};
+use super::{Folder, document, done, folder, line, refused, scene};
 
 #[test]
 fn clips_of_files_are_what_was_saved() {
@@ -312,5 +312,90 @@ fn layers_have_names_and_clips_of_their_own() {
     ] {
         fs::write(here.join("list.json"), text).unwrap();
         refused(&line(&here, "info @/list.json"), 1, words);
+    }
+}
+
+/// The box from -1 to 1 as a file.
+fn cube(here: &Folder) {
+    let corner = |at: u32| [0, 1, 2].map(|axis| if at >> axis & 1 == 1 { 1 } else { -1 });
+    let mut text = String::new();
+    for [x, y, z] in (0..8).map(corner) {
+        text += &format!("v {x} {y} {z}\n");
+    }
+    // Each side as a polygon of four corners, which turns to the left as seen from outside.
+    for side in [
+        "1 3 4 2", "5 6 8 7", "1 2 6 5", "3 7 8 4", "1 5 7 3", "2 4 8 6",
+    ] {
+        text += &format!("f {side}\n");
+    }
+    fs::write(here.join("cube.obj"), text).unwrap();
+}
+
+#[test]
+fn a_mesh_is_a_clip_like_any_other() {
+    let here = folder("meshes");
+    scene(&here);
+    cube(&here);
+    let draw = |name: &str, flags: &str| {
+        let words = format!("render @/scene.ply -o @/{name} --size 48x36 {flags}");
+        done(line(&here, &words));
+        Picture::load(here.join(name)).expect("a picture")
+    };
+    let most = |a: &Picture, b: &Picture| {
+        let pairs = a.pixels.iter().flatten().zip(b.pixels.iter().flatten());
+        pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
+    };
+    let placed = "mesh:@/cube.obj;scale=0.4;turn=0.9,0.2,0.1,0.3;at=0.1,0,0.2";
+    let solid = "box:0.1,0,0.2,0.4,0.4,0.4,0.9,0.2,0.1,0.3";
+    let whole = draw("whole.exr", "");
+    for mode in ["hard", "rara", "exact"] {
+        for not in ["", "!"] {
+            let of_mesh = draw("mesh.exr", &format!("--mode {mode} --clip {not}{placed}"));
+            let of_box = draw("box.exr", &format!("--mode {mode} --clip {not}{solid}"));
+            let off = most(&of_mesh, &of_box);
+            // The weight of mode rara jumps where a ray leaves the ellipsoid.
+            let most_off = if mode == "rara" { 5.0 } else { 2.0 };
+            assert!(off < most_off / 255.0, "{mode} {not}: {off}");
+            assert!(most(&of_mesh, &whole) > 0.05, "{mode} {not}");
+        }
+    }
+    // In combinations, however splats are drawn, saved, moved and as a selection.
+    let both = format!("all(!{placed},plane:1,0,0,0)");
+    let tiles = draw(
+        "tiles.exr",
+        &format!("--clip-expr {both} --save-clip @/kept.json"),
+    );
+    let of_box = draw(
+        "box.exr",
+        &format!("--clip-expr all(!{solid},plane:1,0,0,0)"),
+    );
+    assert!(most(&tiles, &of_box) < 2.0 / 255.0);
+    let quads = draw("quads.exr", &format!("--clip-expr {both} --raster quad"));
+    assert!(most(&tiles, &quads) < 1.0 / 255.0);
+    assert!(draw("saved.exr", "--clip-file @/kept.json") == tiles);
+    let way = "sweep @/scene.ply --frames 3 --size 32x24 -o @/way_{}.exr";
+    let ends = "--from mesh:@/cube.obj;scale=0.2 --to mesh:@/cube.obj;scale=0.6;at=0.4,0,0";
+    done(line(&here, &format!("{way} {ends}")));
+    let middle = Picture::load(here.join("way_0001.exr")).expect("a picture");
+    let clip = "--size 32x24 --clip mesh:@/cube.obj;scale=0.4;at=0.2,0,0";
+    done(line(
+        &here,
+        &format!("render @/scene.ply -o @/still.exr {clip}"),
+    ));
+    assert!(
+        most(
+            &middle,
+            &Picture::load(here.join("still.exr")).expect("a picture")
+        ) < 1e-3
+    );
+    let picked = draw("picked.exr", &format!("--select core=inside({placed})"));
+    assert!(most(&picked, &whole) < 1e-3, "all layers are shown");
+    for (flags, says) in [
+        ("--clip mesh:@/none.obj", "none.obj"),
+        ("--clip mesh:@/cube.obj;at=1", "'1' has 1 numbers; give 3"),
+        ("--clip mesh:@/scene.ply", "scene.ply"),
+    ] {
+        let words = format!("render @/scene.ply -o @/a.png {flags}");
+        refused(&line(&here, &words), 2, says);
     }
 }

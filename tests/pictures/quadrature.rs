@@ -2,10 +2,12 @@
 //!
 //! Cases of small splats have few pixels, of which all are integrated; of large ones a few are, which stand for the rest.
 
+mod meshes;
+
 use std::thread;
 
 use crate::common;
-use glam::{DQuat, DVec2, DVec3, Quat, Vec3};
+use glam::{DQuat, DVec2, DVec3};
 use rara::clip::Expression;
 use rara::{Camera, Clip, Decay, Gaussians, Headless, Mode, Raster, Settings};
 use rara_reference::cutoff::cutting_count;
@@ -65,8 +67,9 @@ impl Dice {
     }
 }
 
-/// One splat, a view of it, and a region that cuts it.
+/// One splat, a view of it, a region that cuts it, and the rays along each side of a pixel's grid.
 struct Case {
+    steps: u32,
     gaussians: Gaussians,
     camera: Camera,
     region: String,
@@ -94,26 +97,11 @@ impl Case {
         })
     }
 
-    /// A splat of this size in pixels somewhere in the picture, and 1 to 5 shapes about it. Large ones reach around the eye.
-    fn any(dice: &mut Dice, [low, high]: [f64; 2]) -> Self {
-        let eye = DVec3::new(0.3, -0.2, 0.1);
-        let camera = Camera::look_at(eye, eye + dice.direction(), dice.direction(), 50.0, SIZE);
-        let camera = camera.expect("two random directions").fx(FOCAL).fy(FOCAL);
-        let depth = dice.range(1.0, 4.0);
-        let sigma = dice.factor(low, high) * depth / FOCAL;
-        let aside = DVec2::new(dice.range(-0.4, 0.4), dice.range(-0.3, 0.3)) * depth;
-        let centre = eye + camera.rotation.transpose() * aside.extend(depth);
-        let scales = DVec3::new(1.0, dice.factor(0.1, 1.0), dice.factor(0.1, 1.0)) * sigma;
-        let turn = dice.turn();
-        let mut gaussians = Gaussians::default();
-        let opacity = dice.range(0.5, 0.99) as f32;
-        let (position, turn): (Vec3, Quat) = (centre.as_vec3(), turn.as_quat());
-        gaussians.push(position, scales.as_vec3(), turn, opacity, &[1.0; 3]);
-
+    /// A splat of this size in pixels somewhere in the picture, and 1 to 5 shapes about it.
+    fn any(dice: &mut Dice, sizes: [f64; 2]) -> Self {
+        let (gaussians, camera) = splat(dice, sizes);
         let count = 1 + (dice.unit() * 5.0) as usize;
-        let mut parts: Vec<_> = (0..count)
-            .map(|_| shape(dice, position.as_dvec3(), scales, turn.as_dquat()))
-            .collect();
+        let mut parts: Vec<_> = (0..count).map(|_| shape(dice, &gaussians)).collect();
         while parts.len() > 1 {
             let name = if dice.unit() < 0.5 { "all" } else { "any" };
             let (a, b) = (parts.remove(0), parts.remove(0));
@@ -122,6 +110,7 @@ impl Case {
         let region = parts.remove(0);
         let expression: Expression = region.parse().expect("an expression");
         Self {
+            steps: STEPS,
             clip: expression.clip(),
             gaussians,
             camera,
@@ -133,16 +122,41 @@ impl Case {
     fn share(&self, pixel: usize) -> f64 {
         let width = SIZE.0 as usize;
         let middle = DVec2::new((pixel % width) as f64 + 0.5, (pixel / width) as f64 + 0.5);
-        PixelRays::parallel(&self.camera, &self.clip, middle, STEPS).share(&self.gaussians, 0)
+        PixelRays::parallel(&self.camera, &self.clip, middle, self.steps).share(&self.gaussians, 0)
     }
+}
+
+/// A splat of this size in pixels somewhere in a camera's picture. Large ones reach around the eye.
+fn splat(dice: &mut Dice, [low, high]: [f64; 2]) -> (Gaussians, Camera) {
+    let eye = DVec3::new(0.3, -0.2, 0.1);
+    let camera = Camera::look_at(eye, eye + dice.direction(), dice.direction(), 50.0, SIZE);
+    let camera = camera.expect("two random directions").fx(FOCAL).fy(FOCAL);
+    let depth = dice.range(1.0, 4.0);
+    let sigma = dice.factor(low, high) * depth / FOCAL;
+    let aside = DVec2::new(dice.range(-0.4, 0.4), dice.range(-0.3, 0.3)) * depth;
+    let centre = eye + camera.rotation.transpose() * aside.extend(depth);
+    let scales = DVec3::new(1.0, dice.factor(0.1, 1.0), dice.factor(0.1, 1.0)) * sigma;
+    let turn = dice.turn().as_quat();
+    let mut gaussians = Gaussians::default();
+    let opacity = dice.range(0.5, 0.99) as f32;
+    gaussians.push(centre.as_vec3(), scales.as_vec3(), turn, opacity, &[1.0; 3]);
+    (gaussians, camera)
+}
+
+/// A random direction, a place of the splat up to 2 deviations from its centre along it, and its deviation along it.
+fn place(dice: &mut Dice, splat: &Gaussians) -> (DVec3, DVec3, f64) {
+    let normal = dice.direction();
+    let turn = splat.rotations()[0].as_dquat();
+    let deviation = (turn.inverse() * normal * splat.scales()[0].as_dvec3()).length();
+    let at = splat.centre(0) + normal * deviation * dice.range(-2.0, 2.0);
+    (normal, at, deviation)
 }
 
 /// The text of a random shape whose surface passes through a point of the splat. Its radius is 3 to 100 of the splat's
 /// largest deviations.
-fn shape(dice: &mut Dice, centre: DVec3, scales: DVec3, turn: DQuat) -> String {
-    let normal = dice.direction();
-    let deviation = (turn.inverse() * normal * scales).length();
-    let at = centre + normal * deviation * dice.range(-2.0, 2.0);
+fn shape(dice: &mut Dice, splat: &Gaussians) -> String {
+    let (normal, at, deviation) = place(dice, splat);
+    let scales = splat.scales()[0].as_dvec3();
     let radius = dice.factor(3.0, 100.0) * scales.max_element();
     let middle = at - normal * radius;
     let aside = normal.cross(dice.direction()).normalize();

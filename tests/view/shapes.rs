@@ -70,6 +70,31 @@ fn a_lasso_keeps_what_it_holds_and_is_moved_as_shapes_are() {
 }
 
 #[test]
+fn a_mesh_is_moved_turned_and_scaled_as_shapes_are() {
+    let folder = folder("mesh");
+    let Some(display) = Display::start(&folder) else {
+        return;
+    };
+    let corners = "v 0 0 1\nv 0.9 0 -0.5\nv -0.5 0.8 -0.5\nv -0.5 -0.8 -0.5\n";
+    let faces = "f 1 2 3\nf 1 3 4\nf 1 4 2\nf 2 4 3\n";
+    fs::write(folder.join("cutter.obj"), format!("{corners}{faces}")).expect("a file");
+    let words =
+        "--size 160x120 --mode hard --background 0.1,0.2,0.3 --clip mesh:@/cutter.obj;scale=0.9";
+    let mut viewer = Viewer::start(&display, &folder, words);
+    let start = viewer.screenshot("start");
+    viewer.say("drag 9,4\ntilt 20,30\nscale 0.8");
+    let moved = viewer.screenshot("moved");
+    assert!(apart(&start, &moved) > 20.0);
+    viewer.say("shape flip");
+    let flipped = viewer.screenshot("flipped");
+    assert!(apart(&moved, &flipped) > 20.0);
+    let printed = viewer.quit();
+    for name in ["start", "moved", "flipped"] {
+        draws_again(&folder, name, &printed);
+    }
+}
+
+#[test]
 fn outlines_are_drawn_over_the_window_and_not_into_screenshots() {
     let folder = folder("outlines");
     let Some(display) = Display::start(&folder) else {

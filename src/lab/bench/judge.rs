@@ -138,7 +138,7 @@ fn sweep(scene: &Scene<'_>, clip: &Clip, steps: u32) -> Result<Vec<Clip>> {
     };
     let moved = |surface: &Surface, step: u32| {
         let Some(plane) = surface.as_plane() else {
-            return Ok(*surface);
+            return Ok(surface.clone());
         };
         let by = STEP * f64::from(step) * extent(plane.normal());
         Plane::new(plane.normal(), plane.offset() - by).map(Surface::from)

@@ -5,7 +5,7 @@
 //! crossings are added up, each of which the region keeps or not, of lines that cross the surfaces as steeply as one direction
 //! can, at the points of a lattice: exact without low-pass. Open planes of a list are weighed as the polytope that they bound.
 
-use super::UnitSurface;
+use super::RestSurface;
 use super::crossing::Sight;
 use super::reduced::list_op;
 use super::share::share;
@@ -17,7 +17,7 @@ use rara_scene::clip::postfix::answer;
 
 /// The surfaces that cut a splat, and how they combine.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Combination<T>(pub Vec<(UnitSurface<T>, Vec<ClipOp>)>);
+pub struct Combination<T>(pub Vec<(RestSurface<T>, Vec<ClipOp>)>);
 
 /// What a function of this gradient changes by for each deviation.
 pub(super) fn among<T: Real>(deviations: &[Vec3<T>; 3], gradient: Vec3<T>) -> Vec3<T> {
@@ -37,15 +37,34 @@ impl<T: Real> Combination<T> {
 
     /// True when the region keeps a point of the unit space.
     pub(crate) fn keeps(&self, point: Vec3<T>) -> bool {
-        self.answer(&|i| self.0[i].0.at(point) >= T::zero())
+        self.answer(&|i| match &self.0[i].0 {
+            RestSurface::Smooth(surface) => surface.at(point) >= T::zero(),
+            RestSurface::Inside(inside) => inside.keeps(point),
+        })
     }
 
     /// The share that is kept in a pixel.
     pub(crate) fn share(&self, sight: &Sight<T>) -> T {
-        if let [(surface, _)] = &self.0[..] {
-            return sight.share(surface);
+        match &self.0[..] {
+            [(RestSurface::Smooth(surface), _)] => return sight.share(surface),
+            [(RestSurface::Inside(inside), _)] => {
+                if let Some(share) = inside.share(sight.mean, sight.deviations()) {
+                    return share;
+                }
+            }
+            _ => {}
         }
-        let crossed: Vec<_> = self.0.iter().map(|(s, _)| sight.crossed(s)).collect();
+        let ends = (-T::of(PHI_ONE), T::of(PHI_ONE));
+        let mass = |low: T, high: T| high.phi() - low.phi();
+        let by_lines = || self.measure_through(sight, ends, &mass);
+        let smooth = self.0.iter().map(|(surface, _)| surface.as_smooth());
+        let Some(smooth) = smooth.collect::<Option<Vec<_>>>() else {
+            return by_lines().max(T::zero()).min(T::one());
+        };
+        let crossed: Vec<_> = smooth
+            .iter()
+            .map(|surface| sight.crossed(surface))
+            .collect();
         let bent = crossed.iter().position(|crossed| crossed.bends);
         let mut open: Vec<Threshold<T>> = Vec::new();
         let is_open = |t: &Threshold<T>| t.z.abs() < T::of(PHI_ONE);
@@ -86,14 +105,11 @@ impl<T: Real> Combination<T> {
             true => T::one(),
             false => T::zero(),
         };
-        let ends = (-T::of(PHI_ONE), T::of(PHI_ONE));
-        let mass = |low: T, high: T| high.phi() - low.phi();
-        let by_lines = || self.measure_through(sight, ends, &mass);
         let share = match open[..] {
             _ if bent.is_some() && open.len() > 1 => by_lines(),
             [] => answer(0),
             [a] => {
-                let p = bent.map_or_else(|| a.z.phi(), |bent| sight.share(&self.0[bent].0));
+                let p = bent.map_or_else(|| a.z.phi(), |bent| sight.share(smooth[bent]));
                 answer(0) * (T::one() - p) + answer(1) * p
             }
             [a, b] => {

@@ -1,8 +1,8 @@
 //! What the surfaces of a splat keep of lines through it.
 
-use super::UnitSurface;
 use super::combination::{Combination, among};
 use super::crossing::{FAR_AWAY, Sight};
+use super::{RestSurface, UnitSurface};
 use crate::real::{Real, Vec3, vec3};
 
 /// How far the points of the lattice are apart, in deviations, how far it reaches, and the cosine and the sine by which it is
@@ -71,6 +71,41 @@ fn unit<T: Real>(v: Vec3<T>) -> Vec3<T> {
     }
 }
 
+/// What a surface keeps of a line: a stretch, or what a mesh keeps between places where that changes.
+enum Kept<T> {
+    Stretch(Stretch<T>),
+    Changes(bool, Vec<T>),
+}
+
+impl<T: Real> Kept<T> {
+    fn of_line(surface: &RestSurface<T>, at: Vec3<T>, direction: Vec3<T>) -> Self {
+        match surface {
+            RestSurface::Smooth(surface) => Self::Stretch(Stretch::of_line(surface, at, direction)),
+            RestSurface::Inside(inside) => {
+                let (kept, changes) = inside.changes(at, direction);
+                Self::Changes(kept, changes)
+            }
+        }
+    }
+
+    fn ends(&self) -> Vec<T> {
+        match self {
+            Self::Stretch(stretch) => vec![stretch.start, stretch.end],
+            Self::Changes(_, changes) => changes.clone(),
+        }
+    }
+
+    fn keeps(&self, t: T) -> bool {
+        match self {
+            Self::Stretch(stretch) => stretch.keeps(t),
+            Self::Changes(kept, changes) => {
+                let before = changes.iter().filter(|&&change| change < t).count();
+                *kept != (before % 2 == 1)
+            }
+        }
+    }
+}
+
 impl<T: Real> Combination<T> {
     /// The measure of what is kept of the points `at + t direction` from `start` to `end`, by the measure of a stretch.
     pub(crate) fn measure_line(
@@ -80,8 +115,8 @@ impl<T: Real> Combination<T> {
         measure: &dyn Fn(T, T) -> T,
     ) -> T {
         let surfaces = self.0.iter();
-        let stretches = surfaces.map(|(surface, _)| Stretch::of_line(surface, at, direction));
-        self.walked(&stretches.collect::<Vec<_>>(), ends, measure)
+        let kept = surfaces.map(|(surface, _)| Kept::of_line(surface, at, direction));
+        self.walked(&kept.collect::<Vec<_>>(), ends, measure)
     }
 
     /// The measure of what is kept of a pixel, by that of a stretch of a line along which a function of this gradient varies
@@ -114,6 +149,7 @@ impl<T: Real> Combination<T> {
     fn direction_through(&self, (mean, deviations): Spread<'_, T>) -> Vec3<T> {
         let zero = Vec3::zero();
         let weighed = self.0.iter().map(|(surface, _)| {
+            let surface = surface.nearest();
             let a = among(deviations, surface.gradient(mean));
             let square = a.squared().max(T::of(1e-30));
             let value = surface.at(mean);
@@ -145,6 +181,9 @@ impl<T: Real> Combination<T> {
     /// Crossings on lines of this direction move by no more than this for each deviation across it.
     fn turn(&self, (mean, deviations): Spread<'_, T>, direction: Vec3<T>) -> T {
         self.0.iter().fold(T::zero(), |most, (surface, _)| {
+            let RestSurface::Smooth(surface) = surface else {
+                return T::one(); // its faces may turn in any way
+            };
             let a = among(deviations, surface.gradient(mean));
             let along = a.dot(direction);
             let parts = [direction.x, direction.y, direction.z];
@@ -194,13 +233,8 @@ impl<T: Real> Combination<T> {
         share / weights
     }
 
-    fn walked(
-        &self,
-        stretches: &[Stretch<T>],
-        (start, end): (T, T),
-        measure: &dyn Fn(T, T) -> T,
-    ) -> T {
-        let ends = stretches.iter().flat_map(|s| [s.start, s.end]);
+    fn walked(&self, surfaces: &[Kept<T>], (start, end): (T, T), measure: &dyn Fn(T, T) -> T) -> T {
+        let ends = surfaces.iter().flat_map(Kept::ends);
         let mut ends: Vec<T> = ends.filter(|&t| t > start && t < end).collect();
         ends.extend([start, end]);
         ends.sort_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
@@ -214,7 +248,7 @@ impl<T: Real> Combination<T> {
                 (false, true) => high - one,
                 (false, false) => T::zero(),
             };
-            if self.answer(&|i| stretches[i].keeps(middle)) {
+            if self.answer(&|i| surfaces[i].keeps(middle)) {
                 total = total + measure(low, high);
             }
         }

@@ -1,10 +1,10 @@
 //! A region as one Gaussian sees it: the surfaces that cut it, and how they combine once all others are decided.
 
 use super::surface::unit_surface;
-use super::{Ellipsoid, Side, UnitSurface, surface_gaussian_side};
+use super::{Ellipsoid, Side, UnitInside, UnitSurface, surface_gaussian_side};
 use crate::real::Real;
 use rara_scene::clip::postfix::{answer, postfix};
-use rara_scene::clip::{Clip, ClipOp};
+use rara_scene::clip::{Clip, ClipOp, Surface};
 use rara_scene::settings::Settings;
 
 /// What is left of a region.
@@ -13,7 +13,34 @@ pub enum RegionRest<T> {
     /// All or nothing is kept.
     Decided(bool),
     /// The surfaces that cut the Gaussian. After each, its operators replace the two answers on top of a stack.
-    Cut(Vec<(UnitSurface<T>, Vec<ClipOp>)>),
+    Cut(Vec<(RestSurface<T>, Vec<ClipOp>)>),
+}
+
+/// A surface that cuts a Gaussian.
+#[derive(Debug, Clone, PartialEq)]
+pub enum RestSurface<T> {
+    /// A plane, or one that bends.
+    Smooth(UnitSurface<T>),
+    /// The inside of a mesh.
+    Inside(UnitInside<T>),
+}
+
+impl<T: Real> RestSurface<T> {
+    /// The surface, or the plane that a mesh is near the Gaussian's centre.
+    pub(crate) fn nearest(&self) -> &UnitSurface<T> {
+        match self {
+            Self::Smooth(surface) => surface,
+            Self::Inside(inside) => &inside.nearest,
+        }
+    }
+
+    /// The surface, if it is no mesh.
+    pub(crate) fn as_smooth(&self) -> Option<&UnitSurface<T>> {
+        match self {
+            Self::Smooth(surface) => Some(surface),
+            Self::Inside(_) => None,
+        }
+    }
 }
 
 impl<T: Real> RegionRest<T> {
@@ -38,7 +65,9 @@ impl<T: Real> RegionRest<T> {
         if let Self::Cut(surfaces) = &mut self {
             leave_out_implied(surfaces, deviations);
             for (surface, _) in surfaces {
-                *surface = surface.scaled();
+                if let RestSurface::Smooth(surface) = surface {
+                    *surface = surface.scaled();
+                }
             }
         }
         self
@@ -54,10 +83,11 @@ impl<T: Real> RegionRest<T> {
 }
 
 /// The operation that joins all surfaces, if there is only one such operation and none of the surfaces bends.
-pub(super) fn list_op<T: Real>(surfaces: &[(UnitSurface<T>, Vec<ClipOp>)]) -> Option<ClipOp> {
+pub(super) fn list_op<T: Real>(surfaces: &[(RestSurface<T>, Vec<ClipOp>)]) -> Option<ClipOp> {
     let mut operators = surfaces.iter().flat_map(|(_, operators)| operators);
     let op = operators.next().copied().unwrap_or_default();
-    let is_flat = surfaces.iter().all(|(surface, _)| surface.is_flat());
+    let is_plane = |surface: &RestSurface<T>| surface.as_smooth().is_some_and(UnitSurface::is_flat);
+    let is_flat = surfaces.iter().all(|(surface, _)| is_plane(surface));
     (is_flat && operators.all(|other| *other == op)).then_some(op)
 }
 
@@ -72,7 +102,13 @@ pub(crate) fn reduced<T: Real>(
         let side = surface_gaussian_side(&step.surface, ellipsoid, deviations, settings);
         let part = match side {
             Side::Cutoff => {
-                RegionRest::Cut(vec![(unit_surface(&step.surface, ellipsoid), Vec::new())])
+                let surface = match &step.surface {
+                    Surface::Inside(inside) => {
+                        RestSurface::Inside(UnitInside::new(inside, ellipsoid))
+                    }
+                    surface => RestSurface::Smooth(unit_surface(surface, ellipsoid)),
+                };
+                RegionRest::Cut(vec![(surface, Vec::new())])
             }
             side => RegionRest::Decided(side == Side::Visible),
         };
@@ -119,11 +155,11 @@ fn implies<T: Real>(one: &UnitSurface<T>, other: &UnitSurface<T>, deviations: T)
 }
 
 /// Takes a surface off a list that changes nothing beside the one that it is joined with: as a capsule's ball within its tube.
-fn leave_out_implied<T: Real>(surfaces: &mut Vec<(UnitSurface<T>, Vec<ClipOp>)>, deviations: T) {
+fn leave_out_implied<T: Real>(surfaces: &mut Vec<(RestSurface<T>, Vec<ClipOp>)>, deviations: T) {
     let mut i = 1;
     while i < surfaces.len() {
-        let [(below, []), (top, [op, ..])] =
-            [i - 1, i].map(|i| (&surfaces[i].0, &surfaces[i].1[..]))
+        let [(Some(below), []), (Some(top), [op, ..])] =
+            [i - 1, i].map(|i| (surfaces[i].0.as_smooth(), &surfaces[i].1[..]))
         else {
             i += 1;
             continue;

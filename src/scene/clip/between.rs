@@ -8,7 +8,7 @@ use rara_base::error::{Error, Result};
 
 impl Expression {
     /// Returns the region at a share of the way from this one to another: 0 is this one, 1 the other. Both must have the same
-    /// kinds of shapes in the same order, and prisms as many corners. Points, sizes and radii are interpolated linearly, and rotations and normals of
+    /// kinds of shapes in the same order, prisms as many corners, and meshes the same faces. Points, sizes and radii are interpolated linearly, and rotations and normals of
     /// planes along the shortest arcs. Planes that have a line in common keep it.
     ///
     /// ```
@@ -46,6 +46,10 @@ impl Expression {
                     1.0 => other.clone(),
                     _ => Self::Prism(made?),
                 }
+            }
+            (Self::Mesh(from), Self::Mesh(to)) => {
+                let made = from.between(to, share);
+                Self::Mesh(made.ok_or_else(|| unlike(self, other))??)
             }
             (Self::Not(from), Self::Not(to)) => Self::Not(Box::new(from.between(to, share)?)),
             _ => return Err(unlike(self, other)),

@@ -10,10 +10,11 @@ use serde::de::{EnumAccess, Error as _, MapAccess, SeqAccess, Unexpected, Varian
 use serde::ser::SerializeStructVariant;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use super::expression::{POLYGON, names};
+use super::expression::{MESH, POLYGON, names};
+use super::mesh_shape::MeshRecord;
 use super::shape_text::kind;
 use super::solid::Kind;
-use super::{Expression, Plane, Prism, PrismBase, Shape};
+use super::{Expression, MeshShape, Plane, Prism, PrismBase, Shape};
 use rara_base::error::{Error, Result};
 use rara_base::json;
 
@@ -123,6 +124,7 @@ enum Node {
     Any(Vec<Node>),
     Not(Box<Node>),
     Prism(PrismRecord),
+    Mesh(MeshRecord),
     /// The kind of a solid, and its numbers.
     Solid(&'static Kind, Vec<f64>),
 }
@@ -150,6 +152,7 @@ impl<'de> Visitor<'de> for NodeVisitor {
             "any" => content.newtype_variant().map(Node::Any),
             "not" => content.newtype_variant().map(Node::Not),
             POLYGON => content.newtype_variant().map(Node::Prism),
+            MESH => content.newtype_variant().map(Node::Mesh),
             _ => match kind(&name) {
                 Some(kind) => {
                     let numbers = content.struct_variant(&[], kind)?;
@@ -218,6 +221,9 @@ impl Serialize for Expression {
             Self::Prism(prism) => {
                 to.serialize_newtype_variant("Node", 0, POLYGON, &PrismRecord::from(prism))
             }
+            Self::Mesh(mesh) => {
+                to.serialize_newtype_variant("Node", 0, MESH, &MeshRecord::from(mesh))
+            }
             Self::Shape(shape) if shape.is_outside() => {
                 let inside = Self::Shape(shape.complement());
                 to.serialize_newtype_variant("Node", 0, "not", &inside)
@@ -275,6 +281,7 @@ impl Node {
                     .collect();
                 Expression::Prism(Prism::new(axis.into(), &rings, heights)?)
             }
+            Self::Mesh(record) => Expression::Mesh(MeshShape::try_from(record)?),
             Self::Solid(kind, numbers) => Expression::Shape(Shape::new(kind.solid(&numbers)?)?),
         })
     }
@@ -285,7 +292,9 @@ impl Node {
 /// everything. A node of the tree is `{"all": [...]}`, `{"any": [...]}`, `{"not": ...}` or a shape,
 /// as `{"sphere": {"centre": [x, y, z], "radius": r}}`; quaternions are w, x, y, z. A [`Prism`] is
 /// `{"polygon": {"axis": "z", "rings": [[[x, y], ...], ...], "heights": [low, high]}}`; its axis may be a direction `[x, y, z]`, or
-/// `{"eye": [x, y, z], "right": [x, y, z], "down": [x, y, z]}`.
+/// `{"eye": [x, y, z], "right": [x, y, z], "down": [x, y, z]}`. A [`MeshShape`] is
+/// `{"mesh": {"file": "cutter.stl", "rule": "closed", "scale": 1, "turn": [1, 0, 0, 0], "at": [0, 0, 0]}}`, of which only the file must be
+/// given.
 ///
 /// # Errors
 /// [`Error::Io`] if the file can't be read, [`Error::Format`] if it is no such list or empty, or has a shape without size.

@@ -5,7 +5,7 @@ use std::{fmt, slice};
 
 use super::shape_text::kind;
 use super::solid::KINDS;
-use super::{Clip, ClipOp, Plane, Prism, Shape, Solid};
+use super::{Clip, ClipOp, MeshShape, Plane, Prism, Shape, Solid};
 use crate::bounds::Bounds;
 use crate::text_reader::{ShapeTree, TextReader, joined};
 use rara_base::error::{Error, Result, shortened};
@@ -30,6 +30,8 @@ pub enum Expression {
     Shape(Shape),
     /// The prism of a polygon.
     Prism(Prism),
+    /// The inside of a mesh.
+    Mesh(MeshShape),
     /// Keeps the points that all of these expressions keep. The list is not empty.
     All(Vec<Expression>),
     /// Keeps the points that at least one of these expressions keeps. The list is not empty.
@@ -40,9 +42,11 @@ pub enum Expression {
 
 /// The word with which the text of a prism begins.
 pub(super) const POLYGON: &str = "polygon";
+/// The word with which the text of a mesh begins.
+pub(super) const MESH: &str = "mesh";
 
 /// The kinds of shapes that are not solids: the word with which their text begins, and their usage.
-const OTHERS: &[(&str, &str)] = &[(POLYGON, Prism::USAGE)];
+const OTHERS: &[(&str, &str)] = &[(POLYGON, Prism::USAGE), (MESH, MeshShape::USAGE)];
 
 /// The names of all kinds of shapes, for messages.
 pub(super) fn names() -> String {
@@ -65,7 +69,7 @@ impl Expression {
         Solid::usages().chain(OTHERS.iter().map(|(_, usage)| *usage))
     }
 
-    /// Reads the text of one shape or prism, perhaps with a `!` before it, as [`ShapeTree::read`] reads expressions.
+    /// Reads the text of one shape, prism or mesh, perhaps with a `!` before it, as [`ShapeTree::read`] reads expressions.
     #[cfg(all(feature = "formats", feature = "json"))] // for layers' regions
     pub(crate) fn read_leaf(text: &str, bounds: Option<Bounds>) -> Result<(Self, bool)> {
         let bare = text.trim().trim_start_matches('!').trim_start();
@@ -90,13 +94,14 @@ impl Expression {
         match self {
             Self::Shape(shape) => shape.clip(),
             Self::Prism(prism) => prism.clip(),
+            Self::Mesh(mesh) => Clip::of([mesh.inside().clone()], ClipOp::And),
             Self::All(all) => Clip::joined(all.iter().map(Self::clip), ClipOp::And),
             Self::Any(any) => Clip::joined(any.iter().map(Self::clip), ClipOp::Or),
             Self::Not(expression) => expression.clip().complement(),
         }
     }
 
-    /// Returns the shapes of the expression in the order of its text, to move or replace them; prisms are none of these.
+    /// Returns the shapes of the expression in the order of its text, to move or replace them, without its prisms and meshes.
     ///
     /// ```
     /// # use rara_scene as rara;
@@ -128,10 +133,10 @@ impl Expression {
         self.leaves().into_iter().filter_map(shape).collect()
     }
 
-    /// Returns the shapes and prisms of the expression in the order of its text, each as an expression.
+    /// Returns the shapes, prisms and meshes of the expression in the order of its text, each as an expression.
     pub fn leaves(&self) -> Vec<&Self> {
         match self {
-            Self::Shape(_) | Self::Prism(_) => vec![self],
+            Self::Shape(_) | Self::Prism(_) | Self::Mesh(_) => vec![self],
             Self::All(all) | Self::Any(all) => all.iter().flat_map(Self::leaves).collect(),
             Self::Not(expression) => expression.leaves(),
         }
@@ -140,7 +145,7 @@ impl Expression {
     /// Returns the same to move or replace them.
     pub fn leaves_mut(&mut self) -> Vec<&mut Self> {
         match self {
-            Self::Shape(_) | Self::Prism(_) => vec![self],
+            Self::Shape(_) | Self::Prism(_) | Self::Mesh(_) => vec![self],
             Self::All(all) | Self::Any(all) => all.iter_mut().flat_map(Self::leaves_mut).collect(),
             Self::Not(expression) => expression.leaves_mut(),
         }
@@ -168,6 +173,7 @@ impl fmt::Display for Expression {
         let (word, operands) = match self {
             Self::Shape(shape) => return shape.fmt(f),
             Self::Prism(prism) => return write!(f, "{POLYGON}:{prism}"),
+            Self::Mesh(mesh) => return write!(f, "{MESH}:{mesh}"),
             Self::All(all) => ("all", all.as_slice()),
             Self::Any(any) => ("any", any.as_slice()),
             Self::Not(expression) => ("not", slice::from_ref(&**expression)),
@@ -194,7 +200,13 @@ impl<'a> TextReader<'a> {
             "" => self.refuse("a shape, all(...), any(...) or not(...) is missing"),
             POLYGON => {
                 let text = self.numbers();
-                self.part(text, prism)
+                self.part(text, |text| prism(behind_word(text)))
+            }
+            MESH => {
+                let text = self.numbers();
+                self.part(text, |text| {
+                    MeshShape::parse(behind_word(text)).map(Expression::Mesh)
+                })
             }
             name if kind(name).is_some() => self.shape(),
             name => self.refuse(format!(
@@ -231,9 +243,13 @@ impl<'a> TextReader<'a> {
     }
 }
 
+/// The text of a prism or a mesh behind its word.
+fn behind_word(text: &str) -> &str {
+    text.split_once(':').map_or("", |(_, rest)| rest)
+}
+
 /// Reads a prism, or those of a file's polygons.
 fn prism(text: &str) -> Result<Expression> {
-    let text = text.split_once(':').map_or("", |(_, rest)| rest);
     #[cfg(feature = "json")]
     if let Some(prisms) = super::geojson::of_file(text) {
         let mut prisms: Vec<_> = prisms?.into_iter().map(Expression::Prism).collect();

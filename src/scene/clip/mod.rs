@@ -6,7 +6,10 @@ mod clip_file;
 mod expression;
 #[cfg(feature = "json")]
 mod geojson;
+mod inside;
 mod lasso;
+mod leaf;
+mod mesh_shape;
 mod outline;
 mod parameter;
 mod placed;
@@ -27,7 +30,9 @@ pub use clip_file::are_alternatives;
 #[cfg(feature = "json")]
 pub use clip_file::{NamedClip, clips_from_json, clips_to_json, load_clips};
 pub use expression::Expression;
+pub use inside::Inside;
 pub use lasso::Lasso;
+pub use mesh_shape::MeshShape;
 pub use parameter::Parameter;
 pub use plane::Plane;
 pub use prism::{Prism, PrismBase};

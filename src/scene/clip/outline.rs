@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 use glam::{DMat3, DQuat, DVec3};
 
-use super::Plane;
+use super::{Inside, Plane};
 use crate::camera::{Camera, Projection};
 
 /// Stretches of a circle: they leave it by less than 1/1800 of its radius.
@@ -83,6 +83,19 @@ impl<'a> Pen<'a> {
             let middle = centre + axes * (ahead * eye);
             self.circle([middle, axes * (radius * right), axes * (radius * up)]);
         }
+    }
+
+    /// The edges of a mesh that are seen.
+    pub(super) fn mesh(&mut self, inside: &Inside) {
+        let there = inside.placement();
+        let back = there.rotation().inverse();
+        let to_eye = |place: DVec3| back * self.sight.from(there.to_world(place));
+        let lines = inside.mesh().outline(to_eye);
+        self.lines.extend(
+            lines
+                .into_iter()
+                .map(|ends| ends.map(|end| there.to_world(end))),
+        );
     }
 
     /// The side of a tube, and a half ball at each end.

@@ -61,6 +61,7 @@ impl Expression {
             match leaf {
                 Self::Shape(shape) => *shape = shape.placed(placement)?,
                 Self::Prism(prism) => *prism = prism.placed(placement)?,
+                Self::Mesh(mesh) => *mesh = mesh.placed(placement)?,
                 Self::All(_) | Self::Any(_) | Self::Not(_) => {}
             }
         }

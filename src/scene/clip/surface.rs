@@ -5,16 +5,18 @@ use std::cmp::Ordering;
 use glam::DVec3;
 
 use super::surface_kind::SurfaceKind;
-use super::{Plane, Quadric};
+use super::{Inside, Plane, Quadric};
 use crate::placement::Placement;
 
 /// A surface that divides space into what it keeps and what it does not.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Surface {
     /// Keeps a half-space.
     Plane(Plane),
     /// Keeps one side of a quadric.
     Quadric(Quadric),
+    /// Keeps the inside of a mesh, or its outside.
+    Inside(Inside),
 }
 
 /// The value of an expression of a surface, of whatever kind it is.
@@ -25,6 +27,7 @@ macro_rules! each_surface {
         match $surface {
             $crate::clip::Surface::Plane($kind) => $value,
             $crate::clip::Surface::Quadric($kind) => $value,
+            $crate::clip::Surface::Inside($kind) => $value,
         }
     };
 }
@@ -69,6 +72,7 @@ impl Surface {
         let kind = |one: &Self| match one {
             Self::Plane(_) => 0,
             Self::Quadric(_) => 1,
+            Self::Inside(_) => 2,
         };
         let of_kinds = kind(self).cmp(&kind(other));
         of_kinds.then_with(|| {
@@ -82,6 +86,12 @@ impl Surface {
 impl From<Plane> for Surface {
     fn from(plane: Plane) -> Self {
         Self::Plane(plane)
+    }
+}
+
+impl From<Inside> for Surface {
+    fn from(inside: Inside) -> Self {
+        Self::Inside(inside)
     }
 }
 

@@ -3,10 +3,12 @@
 use glam::DVec3;
 
 /// What every kind of surface says of itself, beside its own `distance` and `in_scene`.
-pub(super) trait SurfaceKind: Copy {
+pub(super) trait SurfaceKind {
     /// The surface that keeps what this one does not.
     #[must_use]
-    fn complement(&self) -> Self;
+    fn complement(&self) -> Self
+    where
+        Self: Sized;
 
     /// As [`Surface::gradient`](super::Surface::gradient).
     fn gradient(&self, point: DVec3) -> DVec3;

@@ -26,7 +26,7 @@ pub enum Region<T = Expression> {
 }
 
 impl Region {
-    /// The text of one shape, or of a prism.
+    /// The text of one shape, prism or mesh.
     ///
     /// # Errors
     /// [`Error::Invalid`](rara_base::error::Error::Invalid) for other text.

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 /// Vertices and the faces over them.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Faces {
     pub(super) vertices: Vec<DVec3>,
     pub(super) faces: Vec<[u32; 3]>,

@@ -10,6 +10,7 @@ mod lines;
 mod meet;
 mod near;
 mod orient;
+mod outline;
 mod packed;
 #[cfg(feature = "formats")]
 mod polygon;
@@ -23,12 +24,12 @@ mod weld;
 
 use std::fmt;
 use std::hash::{Hash, Hasher};
-use std::str::FromStr;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use glam::DVec3;
 
 use self::edges::Edges;
+use self::faces::Faces;
 pub use self::near::Nearest;
 use self::orient::Shells;
 pub use self::packed::{PackedMesh, PackedNode};
@@ -36,45 +37,24 @@ pub use self::report::MeshReport;
 pub use self::tree::{LEAF, MeshTree, Node};
 use rara_base::error::{Error, Result};
 use rara_base::fnv;
+use rara_base::named;
 
 /// The most faces of a mesh.
 pub const MOST_FACES: usize = 1 << 26;
 
-/// What the inside of a mesh is, and what is asked of it for that.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum MeshRule {
-    /// The surface is closed and does not cut itself. Its faces are turned such that the front of each shell is outside, unless
-    /// the shell is in another one, where it bounds a cavity, in which another may be, and so on.
-    #[default]
-    Closed,
-    /// A point is inside where the winding number around it is not zero: faces may cut each other, and each keeps the direction
-    /// that it has. What is open is closed first, each hole by faces from its rim to the middle of its vertices; a point behind a
-    /// flat hole is then inside where the hole fills less than half of what is seen from it (a generalised winding number above
-    /// 1/2).
-    Winding,
-}
-
-/// `closed` or `winding`.
-impl fmt::Display for MeshRule {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Closed => "closed",
-            Self::Winding => "winding",
-        })
-    }
-}
-
-impl FromStr for MeshRule {
-    type Err = Error;
-
-    fn from_str(text: &str) -> Result<Self> {
-        match text.trim() {
-            "closed" => Ok(Self::Closed),
-            "winding" => Ok(Self::Winding),
-            other => Err(Error::Invalid(format!(
-                "'{other}' is no rule for the inside of a mesh; use closed or winding"
-            ))),
-        }
+named! {
+    /// What the inside of a mesh is, and what is asked of it for that.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+    pub enum MeshRule {
+        /// The surface is closed and does not cut itself. Its faces are turned such that the front of each shell is outside, unless
+        /// the shell is in another one, where it bounds a cavity, in which another may be, and so on.
+        #[default]
+        Closed = "closed",
+        /// A point is inside where the winding number around it is not zero: faces may cut each other, and each keeps the direction
+        /// that it has. What is open is closed first, each hole by faces from its rim to the middle of its vertices; a point behind a
+        /// flat hole is then inside where the hole fills less than half of what is seen from it (a generalised winding number above
+        /// 1/2).
+        Winding = "winding",
     }
 }
 
@@ -83,9 +63,10 @@ impl FromStr for MeshRule {
 pub struct Mesh(Arc<Content>);
 
 struct Content {
-    vertices: Vec<DVec3>,
-    /// In the order of the tree.
-    faces: Vec<[u32; 3]>,
+    /// Its faces are in the order of the tree.
+    made: Faces,
+    /// As [`Edges::twins`], once they are asked for.
+    twins: OnceLock<Vec<u32>>,
     rule: MeshRule,
     tree: MeshTree,
     centre: DVec3,
@@ -159,8 +140,8 @@ impl Mesh {
             hash: 0,
             centre: low + 0.5 * (high - low),
             scale: 0.5 * (high - low).max_element(),
-            vertices: made.vertices,
-            faces: made.faces,
+            made,
+            twins: OnceLock::new(),
             rule,
             tree,
             report,
@@ -171,18 +152,18 @@ impl Mesh {
 
     /// The vertices, no two at one place.
     pub fn vertices(&self) -> &[DVec3] {
-        &self.0.vertices
+        &self.0.made.vertices
     }
 
     /// The faces in the order of the tree, each the numbers of its vertices.
     pub fn faces(&self) -> &[[u32; 3]] {
-        &self.0.faces
+        &self.0.made.faces
     }
 
     /// The corners of a face.
     #[inline]
     pub fn corners(&self, face: u32) -> [DVec3; 3] {
-        self.0.faces[face as usize].map(|vertex| self.0.vertices[vertex as usize])
+        self.0.made.corners(face as usize)
     }
 
     /// The rule that its inside is by.
@@ -229,9 +210,9 @@ impl Mesh {
 
 impl Content {
     fn hashed(&self) -> u64 {
-        let numbers = self.vertices.iter().flat_map(DVec3::to_array);
+        let numbers = self.made.vertices.iter().flat_map(DVec3::to_array);
         let mut hash = fnv::with(fnv::NOTHING, numbers.map(f64::to_bits));
-        hash = fnv::with(hash, self.faces.iter().flatten().copied());
+        hash = fnv::with(hash, self.made.faces.iter().flatten().copied());
         fnv::with(hash, [self.rule as u32])
     }
 }
@@ -239,7 +220,7 @@ impl Content {
 impl PartialEq for Mesh {
     fn eq(&self, other: &Self) -> bool {
         let (a, b) = (&*self.0, &*other.0);
-        let is_same = || (&a.vertices, &a.faces, a.rule) == (&b.vertices, &b.faces, b.rule);
+        let is_same = || (&a.made, a.rule) == (&b.made, b.rule);
         Arc::ptr_eq(&self.0, &other.0) || (a.hash == b.hash && is_same())
     }
 }

@@ -1,6 +1,6 @@
 //! A mesh as shaders have it: single precision, in quads of four words, with a twin of what shaders do with it.
 //!
-//! - Quad 0: the number of nodes n, that of faces, the first quad of faces (1 + 2 n), and 0.
+//! - Quad 0: the number of nodes n, that of faces, the first quad of faces (1 + 2 n), and 1 where these may cut each other, else 0.
 //! - Quad 1 + 2 i, of node i: x, y and z of the low corner of its box, and the node behind all that are below it, its *skip*.
 //! - Quad 2 + 2 i, of node i: x, y and z of the high corner of its box, and for a leaf its first face times 8 plus the number of
 //!   its faces, 1 to 6; for other nodes 0.
@@ -14,7 +14,7 @@
 
 use glam::Vec3;
 
-use super::Mesh;
+use super::{Mesh, MeshRule};
 
 /// Bits of a leaf's number of faces.
 const COUNT_BITS: u32 = 3;
@@ -50,7 +50,8 @@ impl Mesh {
         let (count, faces) = (nodes.len(), self.faces().len());
         let first = 1 + 2 * count;
         let mut quads = vec![[0; 4]; first + (9 * faces).div_ceil(4)];
-        quads[0] = [count as u32, faces as u32, first as u32, 0];
+        let may_overlap = self.rule() == MeshRule::Winding;
+        quads[0] = [count as u32, faces as u32, first as u32, may_overlap.into()];
         for (node, quads) in nodes.iter().zip(quads[1..].chunks_exact_mut(2)) {
             let low = self.to_unit(node.low).to_array().map(rounded_down);
             let high = self

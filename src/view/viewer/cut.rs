@@ -137,12 +137,8 @@ impl ClipEditor {
     /// The middle of the held shape; of planes and slabs the point nearest to the middle of the scene when it was taken hold
     /// of, which moves with them.
     pub(super) fn middle(&self) -> DVec3 {
-        let middle = match self.shape() {
-            Some(Expression::Shape(shape)) => shape.middle(self.centre),
-            Some(Expression::Prism(prism)) => prism.middle(self.centre),
-            _ => self.centre,
-        };
-        self.pivot.unwrap_or(middle)
+        let middle = self.shape().map(|shape| shape.middle(self.centre));
+        self.pivot.or(middle).unwrap_or(self.centre)
     }
 
     pub(super) fn next(&mut self) {
@@ -217,8 +213,7 @@ impl ClipEditor {
             Some(Expression::Shape(shape)) if shape.is_outside() => {
                 format!("outside of {}", shape.solid().name())
             }
-            Some(Expression::Shape(shape)) => shape.solid().name().to_owned(),
-            Some(_) => "polygon".into(),
+            Some(shape) => shape.name().to_owned(),
             None => "whole".into(),
         };
         if count > 1 {
@@ -235,13 +230,15 @@ impl ClipEditor {
 fn flip(expression: &mut Expression, before: &mut usize) -> bool {
     match expression {
         Expression::All(all) | Expression::Any(all) => all.iter_mut().any(|one| flip(one, before)),
-        Expression::Not(inner) if *before == 0 && matches!(**inner, Expression::Prism(_)) => {
+        Expression::Not(inner)
+            if *before == 0 && matches!(**inner, Expression::Prism(_) | Expression::Mesh(_)) =>
+        {
             let kept = (**inner).clone();
             *expression = kept;
             true
         }
         Expression::Not(inner) => flip(inner, before),
-        Expression::Shape(_) | Expression::Prism(_) if *before > 0 => {
+        Expression::Shape(_) | Expression::Prism(_) | Expression::Mesh(_) if *before > 0 => {
             *before -= 1;
             false
         }
@@ -252,7 +249,7 @@ fn flip(expression: &mut Expression, before: &mut usize) -> bool {
             };
             true
         }
-        Expression::Prism(_) => {
+        Expression::Prism(_) | Expression::Mesh(_) => {
             *expression = Expression::Not(Box::new(expression.clone()));
             true
         }

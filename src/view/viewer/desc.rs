@@ -1,7 +1,7 @@
 //! The description from which a viewer is opened.
 
 use glam::DVec3;
-use rara::{Clip, FrameLimits, HeadlessDesc, Settings};
+use rara::{Clip, FrameLimits, HeadlessDesc, Settings, Surface};
 use rara_base::setters;
 
 use super::action::Action;
@@ -69,7 +69,12 @@ impl ViewerDesc {
     /// The limits of the frames that are expected, of a scene of however many Gaussians.
     pub(super) fn limits(&self) -> FrameLimits {
         let (layers, clip) = &self.expected;
-        let count = clip.all_surfaces().len() as u32;
+        let all = clip.all_surfaces();
+        let count = all.len() as u32;
+        let faces = all.iter().map(|surface| match surface {
+            Surface::Inside(inside) => inside.mesh().faces().len() as u32,
+            _ => 0,
+        });
         let (planes, surfaces) = match clip.is_general() {
             true => (0, count),
             false => (count, 0),
@@ -79,6 +84,7 @@ impl ViewerDesc {
             .sh_format(self.settings.precision.sh)
             .planes(planes)
             .surfaces(surfaces)
+            .faces(faces.sum())
             .settings(vec![self.settings])
     }
 }

@@ -81,8 +81,14 @@ impl ClipEditor {
         let arc = |from: DVec3| DQuat::from_rotation_arc(from, axis);
         let mut ends = Vec::new();
         let is_plane = self.shape().and_then(Expression::as_plane).is_some();
-        if let Some(Expression::Prism(prism)) = self.shape() {
-            return self.turn(arc(prism.along()));
+        match self.shape() {
+            Some(Expression::Prism(prism)) => return self.turn(arc(prism.along())),
+            // Its own z axis.
+            Some(Expression::Mesh(mesh)) => {
+                let turned = mesh.inside().placement().rotation() * DVec3::Z;
+                return self.turn(arc(turned));
+            }
+            _ => {}
         }
         for parameter in values(self.shape()) {
             match parameter {

@@ -19,6 +19,18 @@ pub(super) fn lines(shape: &Expression) -> Vec<String> {
         lines.push(format!("{:<9} {corners:>10}", "corners"));
         return lines;
     }
+    if let Expression::Mesh(mesh) = shape {
+        let inside = mesh.inside();
+        say("at", &mesh.middle().to_array());
+        say("scale", &[inside.placement().scale()]);
+        turned(inside.placement().rotation(), &mut say);
+        lines.push(format!(
+            "{:<9} {:>10}",
+            "faces",
+            inside.mesh().faces().len()
+        ));
+        return lines;
+    }
     let Expression::Shape(shape) = shape else {
         return lines;
     };

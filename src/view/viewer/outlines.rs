@@ -2,7 +2,6 @@
 
 use glam::DVec3;
 use rara::Camera;
-use rara::clip::Expression;
 
 use super::layers::Clips;
 use crate::Line;
@@ -34,14 +33,7 @@ pub(super) fn lines(clips: &Clips, camera: &Camera, (centre, radius): (DVec3, f6
     let least = drawn.len().saturating_sub(MOST + 1);
     let mut lines = Vec::new();
     for (_, (colour, width), shape, near) in drawn.drain(least..) {
-        let outline = match shape {
-            Expression::Shape(shape) => shape.outline(camera, near, radius),
-            Expression::Prism(prism) => {
-                let height = prism.height(centre);
-                prism.edges([height - radius, height + radius])
-            }
-            _ => Vec::new(),
-        };
+        let outline = shape.outline(camera, near, radius);
         lines.extend(outline.into_iter().map(|ends| Line {
             ends,
             colour,

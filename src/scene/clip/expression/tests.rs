@@ -35,6 +35,7 @@ fn keeps(expression: &Expression, point: DVec3) -> bool {
     match expression {
         Expression::Shape(shape) => shape.clip().keeps(point),
         Expression::Prism(prism) => prism.clip().keeps(point),
+        Expression::Mesh(mesh) => mesh.inside().distance(point) >= 0.0,
         Expression::All(all) => all.iter().all(|e| keeps(e, point)),
         Expression::Any(any) => any.iter().any(|e| keeps(e, point)),
         Expression::Not(expression) => !keeps(expression, point),

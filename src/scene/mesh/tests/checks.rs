@@ -228,10 +228,7 @@ fn wrong_numbers_are_named() {
         assert_eq!(rule.to_string().parse::<MeshRule>().expect("a rule"), rule);
     }
     let error = "open".parse::<MeshRule>().expect_err("no rule").to_string();
-    assert_eq!(
-        error,
-        "'open' is no rule for the inside of a mesh; use closed or winding"
-    );
+    assert_eq!(error, "there is no 'open'; give one of closed, winding");
 }
 
 #[test]

@@ -1,0 +1,217 @@
+// Meshes in a combined record (cut.glsl): a group of entries for each surface that is a mesh. The first entry has the map from the
+// Gaussian's unit space to that of the faces, and the number of entries behind it. Where few faces are near, each has an entry, its corners
+// in an even space about the Gaussian's centre, in which its largest deviation is 1; the first entry then also has how often the mesh winds
+// around the centre. Else lines walk the mesh's hierarchy, which lies behind all records: the second entry has the centre in the mesh's
+// space and, with the first one, where the hierarchy begins, and the third one has the plane of the face nearest to the centre. Included
+// after the buffer `cut_records` is declared. Twin: src/reference/region/inside.rs.
+#ifndef RARA_REGION_FACES
+#define RARA_REGION_FACES
+#include "region/entry.glsl"
+#include "region/face_crossing.glsl"
+
+// An entry's last number: 0 for a surface by itself, else one of these, or a group's first entry's, which is a sum of the others below.
+const float ENTRY_FACE = 64.0;
+const float ENTRY_PLACE = 65.0; // a walked mesh's centre
+const float ENTRY_PLANE = 66.0; // and the plane of its nearest face
+const uint GROUP = 1u;
+const uint GROUP_KEEPS_OUTSIDE = 2u;
+const uint GROUP_OVERLAPS = 4u; // its faces may cut each other
+const uint GROUP_WALKED = 8u; // lines walk its hierarchy
+// The entries of a mesh whose hierarchy is walked.
+const uint WALKED_ENTRIES = 3u;
+// Where a hierarchy begins takes two numbers, so that each is exact.
+const uint ROOT_SHIFT = 16u;
+
+float entry_kind(uint base, uint entry) {
+    return cut_records.at[base + CUT_HEADER + ENTRY_VECTORS * entry + 2u].w;
+}
+
+bool is_group(uint base, uint entry) {
+    float kind = entry_kind(base, entry);
+    return kind > 0.0 && kind < ENTRY_FACE;
+}
+
+// A group of entries.
+struct Faces {
+    mat3 map; // to the space of the faces
+    uint first, count; // the entries behind the first one
+    float winding; // around the centre, where they are faces
+    bool keeps_outside;
+    bool overlaps;
+    bool is_walked;
+    uint root; // of the hierarchy
+    vec3 centre; // in its space
+};
+
+Faces faces_of(uint base, uint entry) {
+    uint at = base + CUT_HEADER + ENTRY_VECTORS * entry;
+    vec4 x = cut_records.at[at];
+    vec4 y = cut_records.at[at + 1u];
+    vec4 z = cut_records.at[at + 2u];
+    uint kind = to_uint(z.w);
+    Faces faces;
+    faces.map = mat3(x.xyz, y.xyz, z.xyz);
+    faces.first = entry + 1u;
+    faces.count = to_uint(x.w);
+    faces.winding = y.w;
+    faces.keeps_outside = (kind & GROUP_KEEPS_OUTSIDE) != 0u;
+    faces.overlaps = (kind & GROUP_OVERLAPS) != 0u;
+    faces.is_walked = (kind & GROUP_WALKED) != 0u;
+    vec4 place = faces.is_walked ? cut_records.at[at + ENTRY_VECTORS] : vec4(0.0);
+    faces.root = faces.is_walked ? to_uint(place.w) << ROOT_SHIFT | to_uint(y.w) : 0u;
+    faces.centre = place.xyz;
+    return faces;
+}
+
+Face face_of(uint base, uint entry) {
+    uint at = base + CUT_HEADER + ENTRY_VECTORS * entry;
+    return Face(cut_records.at[at].xyz, cut_records.at[at + 1u].xyz, cut_records.at[at + 2u].xyz);
+}
+
+// The plane of a face in the unit space.
+UnitSurface face_plane(uint base, uint entry, mat3 map) {
+    Face face = face_of(base, entry);
+    vec3 normal = cross(face.b - face.a, face.c - face.a);
+    return UnitSurface(vec4(normal * map, -dot(normal, face.a)), vec3(0.0), vec3(0.0));
+}
+
+// The surface that an entry is to first order, or nothing where another entry has it. The map is that of the group before.
+UnitSurface seen_surface(uint base, uint entry, inout mat3 map) {
+    float kind = entry_kind(base, entry);
+    if (kind == ENTRY_FACE) {
+        return face_plane(base, entry, map);
+    }
+    if (is_group(base, entry)) {
+        map = faces_of(base, entry).map;
+    }
+    return kind == 0.0 || kind == ENTRY_PLANE ? entry_of(base, entry) : UnitSurface(vec4(0.0), vec3(0.0), vec3(0.0));
+}
+
+// What a half-line meets of a mesh: the nearest crossing, how the winding number grows there, and how often the mesh winds around where
+// it begins.
+struct Ahead {
+    float t;
+    float grows;
+    float winding;
+};
+
+// How far rounding may move what is compared with a node's box, relatively.
+const float WALK_ROUNDING = 1e-6;
+
+// A face of the hierarchy, about the centre.
+Face walked_face(Faces faces, uvec4 head, uint face) {
+    // Nine words without gaps, which begin at any place of a quad.
+    float words[9];
+    uint first = 9u * face;
+    for (uint k = 0u; k < 9u; k++) {
+        words[k] = cut_records.at[faces.root + head.z + (first + k >> 2)][first + k & 3u];
+    }
+    return Face(vec3(words[0], words[1], words[2]) - faces.centre, vec3(words[3], words[4], words[5]) - faces.centre,
+        vec3(words[6], words[7], words[8]) - faces.centre);
+}
+
+// Walks a mesh's hierarchy for the part of a line behind `from`. Where faces do not cut each other, nothing behind the nearest crossing
+// counts.
+Ahead looked_ahead(Faces faces, FaceLine line, float from) {
+    Ahead ahead = Ahead(1e30, 0.0, 0.0);
+    uvec4 head = floatBitsToUint(cut_records.at[faces.root]);
+    for (uint at = 0u; at < head.x;) {
+        vec4 low = cut_records.at[faces.root + 1u + 2u * at];
+        vec4 high = cut_records.at[faces.root + 2u + 2u * at];
+        vec3 a = turned_to_axis(low.xyz - faces.centre - line.origin, line.axis);
+        vec3 b = turned_to_axis(high.xyz - faces.centre - line.origin, line.axis);
+        vec2 near = line.slope * a.z;
+        vec2 far = line.slope * b.z;
+        vec2 ends = vec2(a.z, b.z) / line.speed;
+        vec2 slack = WALK_ROUNDING * (max(abs(a.xy), abs(b.xy)) + max(abs(near), abs(far)));
+        bool passes = all(lessThanEqual(a.xy - max(near, far), slack)) && all(greaterThanEqual(b.xy - min(near, far), -slack));
+        if (!passes || max(ends.x, ends.y) < from || (!faces.overlaps && min(ends.x, ends.y) > ahead.t)) {
+            at = floatBitsToUint(low.w);
+            continue;
+        }
+        uint leaf = floatBitsToUint(high.w);
+        for (uint i = 0u; i < (leaf & 7u); i++) {
+            float here;
+            float grows = face_crossing(line, walked_face(faces, head, (leaf >> 3) + i), here);
+            if (grows != 0.0 && here > from) {
+                ahead.winding -= grows;
+                ahead.grows = here < ahead.t ? grows : ahead.grows;
+                ahead.t = min(ahead.t, here);
+            }
+        }
+        at++;
+    }
+    return ahead;
+}
+
+// True where the mesh is around the points just before what is ahead.
+bool is_inside(Faces faces, Ahead ahead) {
+    return faces.overlaps ? ahead.winding != 0.0 : ahead.grows < 0.0;
+}
+
+// How much more often the mesh winds around the points of a line at `to` than at `from`.
+float winding_between(uint base, Faces faces, FaceLine line, float from, float to) {
+    float grown = 0.0;
+    for (uint i = 0u; i < faces.count; i++) {
+        float here;
+        float grows = face_crossing(line, face_of(base, faces.first + i), here);
+        grown += here > min(from, to) && here <= max(from, to) ? grows : 0.0;
+    }
+    return from <= to ? grown : -grown;
+}
+
+// How often the mesh winds around a point, from what is between it and the centre.
+float winding_at(uint base, Faces faces, vec3 at) {
+    vec3 direction = faces.map * at;
+    if (!(dot(direction, direction) > 0.0)) {
+        return faces.winding;
+    }
+    return faces.winding + winding_between(base, faces, face_line(vec3(0.0), direction), 0.0, 1.0);
+}
+
+bool faces_keep(uint base, Faces faces, vec3 at) {
+    if (faces.is_walked) {
+        FaceLine line = face_line(faces.map * at, vec3(0.0, 0.0, 1.0));
+        return is_inside(faces, looked_ahead(faces, line, 0.0)) != faces.keeps_outside;
+    }
+    return winding_at(base, faces, at) != 0.0 != faces.keeps_outside;
+}
+
+// True when the mesh keeps the points of a line just behind `t`; `next` becomes the next crossing if that is nearer. Where its faces do
+// not cut each other, what is between two crossings follows from either of them: one that leaves the mesh comes from inside.
+bool faces_keep(uint base, Faces faces, vec3 at, vec3 direction, float t, inout float next) {
+    FaceLine line = face_line(faces.map * at, faces.map * direction);
+    if (faces.is_walked) {
+        Ahead ahead = looked_ahead(faces, line, t);
+        next = min(next, ahead.t);
+        return is_inside(faces, ahead) != faces.keeps_outside;
+    }
+    float before = -1e30;
+    float behind = 1e30;
+    float grows_before = 0.0;
+    float grows_behind = 0.0;
+    for (uint i = 0u; i < faces.count; i++) {
+        float here;
+        float grows = face_crossing(line, face_of(base, faces.first + i), here);
+        if (grows == 0.0) {
+            continue;
+        }
+        if (here > t && here < behind) {
+            behind = here;
+            grows_behind = grows;
+        } else if (here <= t && here > before) {
+            before = here;
+            grows_before = grows;
+        }
+    }
+    next = min(next, behind);
+    bool is_held = grows_behind != 0.0 ? grows_behind < 0.0 : grows_before > 0.0;
+    if (faces.overlaps || grows_behind == 0.0 && grows_before == 0.0) {
+        float winding = winding_at(base, faces, at);
+        // A line that crosses no face is as a whole where one of its points is.
+        is_held = winding + (faces.overlaps ? winding_between(base, faces, line, 0.0, t) : 0.0) != 0.0;
+    }
+    return is_held != faces.keeps_outside;
+}
+
+#endif

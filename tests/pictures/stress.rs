@@ -45,6 +45,11 @@ fn regions() {
 }
 
 #[test]
+fn meshes() {
+    check(stress::meshes());
+}
+
+#[test]
 fn frames_and_files() {
     check([stress::frames(), stress::files()].concat());
 }

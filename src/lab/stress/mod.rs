@@ -10,6 +10,7 @@ mod files;
 mod frames;
 mod make;
 mod measure;
+mod meshes;
 mod places;
 mod planes;
 mod regions;
@@ -20,6 +21,7 @@ use rara::{Camera, Clip, Gaussians};
 pub use files::regimes as files;
 pub use frames::regimes as frames;
 pub use measure::{FormRow, RegimeRow, run};
+pub use meshes::regimes as meshes;
 pub use places::regimes as places;
 pub use planes::regimes as planes;
 pub use regions::regimes as regions;
@@ -97,5 +99,14 @@ impl Regime {
 }
 
 pub fn regimes() -> Vec<Regime> {
-    [shapes(), places(), planes(), regions(), frames(), files()].concat()
+    [
+        shapes(),
+        places(),
+        planes(),
+        regions(),
+        meshes(),
+        frames(),
+        files(),
+    ]
+    .concat()
 }

@@ -98,11 +98,26 @@ fn cases(seed: u64, stage: Setup, pixels: [f64; 2], region: &str) -> Vec<Case> {
 
 /// Splats strewn over the border of one region and cut by another: four cases of single ones and a crowd.
 fn seen(seed: u64, stage: Setup, pixels: [f64; 2], border: &str, region: &str) -> Vec<Case> {
-    let mut random = Random::new(seed);
     let parsed = |text: &str| text.parse::<Expression>().expect("a region").clip();
-    let (border, clip) = (parsed(border), parsed(region));
+    let crowds = [(40, true), (40, true), (40, true), (40, true), (100, false)];
+    strewn(
+        (seed, stage),
+        pixels,
+        [parsed(border), parsed(region)],
+        &crowds,
+    )
+}
+
+/// So many splats in each case, apart or not, over the border of one region, and cut by another.
+pub(super) fn strewn(
+    (seed, stage): (u64, Setup),
+    pixels: [f64; 2],
+    [border, clip]: [Clip; 2],
+    crowds: &[(usize, bool)],
+) -> Vec<Case> {
+    let mut random = Random::new(seed);
     let shape = |random: &mut Random, px: f64| px * three_between(random, pixels[0], pixels[1]);
-    let mut case = |count: usize, apart: bool| {
+    let mut case = |&(count, apart): &(usize, bool)| {
         let camera = stage.camera(&mut random);
         let place = |random: &mut Random| on_border(random, stage, &border);
         Case {
@@ -112,9 +127,7 @@ fn seen(seed: u64, stage: Setup, pixels: [f64; 2], border: &str, region: &str) -
             apart,
         }
     };
-    [(40, true), (40, true), (40, true), (40, true), (100, false)]
-        .map(|(count, apart)| case(count, apart))
-        .into()
+    crowds.iter().map(&mut case).collect()
 }
 
 /// A point in which a random line leaves or enters a region, and the normal of the surface there.

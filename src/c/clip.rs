@@ -4,9 +4,9 @@ use std::ffi::c_char;
 use std::path::Path;
 
 use rara::ash::vk;
-use rara::clip::{Expression, NamedClip, clips_from_json, load_clips};
+use rara::clip::{Expression, Inside, NamedClip, clips_from_json, load_clips};
 use rara::glam::DVec3;
-use rara::{Clip, Error, Plane, Result};
+use rara::{Clip, ClipOp, Error, Mesh, Placement, Plane, Result};
 
 use crate::boundary::{RaraResult, exclusive, guard, invalid, list};
 use crate::camera::vector;
@@ -14,7 +14,8 @@ use crate::handles::{alive, create, destroy};
 use crate::settings::choice;
 use crate::text::{self, text};
 
-/// The region that stays visible, made of planes, slabs, boxes, spheres, ellipsoids, cylinders, capsules and cones. Where a
+/// The region that stays visible, made of planes, slabs, boxes, spheres, ellipsoids, cylinders, capsules,
+/// cones, prisms and meshes. Where a
 /// function takes one, null means everything. It does not change; several threads, renderers and layers may use it at once.
 pub struct RaraClip(pub(crate) Clip);
 
@@ -77,6 +78,35 @@ pub unsafe extern "C" fn rara_clip_parse(
     create(clip, "clip", || {
         let expression: Expression = text(expression, "expression")?.parse()?;
         Ok(RaraClip(expression.clip()))
+    })
+}
+
+/// What the inside of a mesh is.
+pub type RaraMeshRule = u32;
+/// The mesh is closed and does not cut itself; its shells lie in each other or apart.
+pub const RARA_MESH_RULE_CLOSED: RaraMeshRule = 0;
+/// A point is inside where the winding number of the faces around it is not zero. Faces may cut each other, and holes are closed.
+pub const RARA_MESH_RULE_WINDING: RaraMeshRule = 1;
+
+/// Makes a clip of the inside of a mesh of triangles, in world units. `vertices` are x, y and z of each, and `faces` the numbers of
+/// three vertices each, which turn to the left as seen from outside. RARA_ERROR_INVALID names the edge or the face where it is not as
+/// the rule asks for. A mesh of a file is the text "mesh:FILE" for rara_clip_parse.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rara_clip_of_mesh(
+    vertices: *const [f64; 3],
+    vertex_count: usize,
+    faces: *const [u32; 3],
+    face_count: usize,
+    rule: RaraMeshRule,
+    clip: *mut *mut RaraClip,
+) -> RaraResult {
+    create(clip, "clip", || {
+        let vertices = list(vertices, vertex_count, "vertices")?.iter();
+        let vertices: Vec<DVec3> = vertices.map(|at| DVec3::from(*at)).collect();
+        let faces = list(faces, face_count, "faces")?;
+        let mesh = Mesh::from_triangles(&vertices, faces, choice(rule, "rule")?)?;
+        let inside = Inside::new(mesh, Placement::IDENTITY);
+        Ok(RaraClip(Clip::of([inside], ClipOp::And)))
     })
 }
 

@@ -47,6 +47,8 @@ pub struct RaraFrameLimits {
     pub settings: *const RaraSettings,
     /// How many settings there are.
     pub settings_count: usize,
+    /// Faces of the meshes whose insides a RaraClip has. Default: 0, for none.
+    pub faces: u32,
 }
 
 versioned!(RaraFrameLimits);
@@ -80,6 +82,7 @@ impl RaraFrameLimits {
             .sh_format(choice(self.sh_format, "sh_format")?)
             .planes(self.planes)
             .surfaces(self.surfaces)
+            .faces(self.faces)
             .pairs((self.pairs > 0).then_some(self.pairs));
         Ok(match settings.is_empty() {
             true => limits,

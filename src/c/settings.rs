@@ -2,8 +2,8 @@
 
 use rara::ash::vk;
 use rara::{
-    ClipOp, Decay, ExactForm, Miss, Mode, PhiForm, Precision, Preset, Raster, Result, Settings,
-    ShFormat, Show, SortBy,
+    ClipOp, Decay, ExactForm, MeshRule, Miss, Mode, PhiForm, Precision, Preset, Raster, Result,
+    Settings, ShFormat, Show, SortBy,
 };
 
 use crate::boundary::{RaraResult, guard, invalid, read, versioned, write};
@@ -170,7 +170,7 @@ macro_rules! coded {
     };
 }
 
-coded! { Mode Decay Miss ExactForm Raster Show SortBy PhiForm Preset ShFormat ClipOp }
+coded! { Mode Decay Miss ExactForm Raster Show SortBy PhiForm Preset ShFormat ClipOp MeshRule }
 
 impl<T: Coded> Coded for Option<T> {
     const NAME: &'static str = T::NAME;

@@ -159,6 +159,42 @@ fn baking_is_that_of_rust() {
 }
 
 #[test]
+fn clips_are_made_of_meshes() {
+    let vertices = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+    let mut clip = null_mut();
+    let mut make = |face_count, rule| {
+        let (at, faces) = (vertices.as_ptr(), faces.as_ptr());
+        // SAFETY: the lists are as long as said, and the pointer may be overwritten.
+        let result = unsafe { rara_clip_of_mesh(at, 4, faces, face_count, rule, &mut clip) };
+        (result, clip)
+    };
+    for (count, rule, says) in [
+        (4, 2, "rule 2 is no RaraMeshRule"),
+        (
+            3,
+            RARA_MESH_RULE_CLOSED,
+            "the mesh is not closed: the edge from",
+        ),
+        (0, RARA_MESH_RULE_WINDING, "the mesh has no faces"),
+    ] {
+        let (result, clip) = make(count, rule);
+        assert_fails(result, RARA_ERROR_INVALID, says);
+        assert!(clip.is_null());
+    }
+    let (result, clip) = make(4, RARA_MESH_RULE_CLOSED);
+    assert_eq!(result, RARA_OK);
+    for (x, kept) in [(0.1, 1), (0.9, 0)] {
+        let mut keeps = 2;
+        // SAFETY: the clip is alive.
+        let result = unsafe { rara_clip_keeps(clip, [x; 3].as_ptr(), &mut keeps) };
+        assert_eq!((result, keeps), (RARA_OK, kept));
+    }
+    // SAFETY: it is not used any more.
+    unsafe { rara_clip_destroy(clip) };
+}
+
+#[test]
 fn clips_are_made_of_planes() {
     let plane = |x| RaraPlane {
         normal: [x, 0.0, 0.0],

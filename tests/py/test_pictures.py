@@ -67,6 +67,17 @@ def test_clips_combine_as_their_texts_do(renderer, gaussians):
     assert isinstance(rara.Sphere((0, 0, 0), 1), rara.Clip)
 
 
+def test_a_mesh_keeps_its_inside(tmp_path):
+    corners = "v 0 0 1\nv 0.9 0 -0.5\nv -0.5 0.8 -0.5\nv -0.5 -0.8 -0.5\n"
+    (tmp_path / "cutter.obj").write_text(corners + "f 1 2 3\nf 1 3 4\nf 1 4 2\nf 2 4 3\n")
+    clip = ~rara.Mesh(tmp_path / "cutter.obj", scale=2, position=(0, 0, 1))
+    assert list(clip.keeps([[0, 0, 1], [0, 0, 2.9], [0, 0, 3.1]])) == [False, False, True]
+    (tmp_path / "open.obj").write_text(corners + "f 1 2 3\nf 1 3 4\nf 1 4 2\n")
+    with pytest.raises(rara.Error, match="is not closed"):
+        rara.Mesh(tmp_path / "open.obj")
+    assert rara.Mesh(tmp_path / "open.obj", winding=True).keeps([[0, 0, 0]]) == [True]
+
+
 def test_clips_keep_to_their_files(tmp_path, gaussians):
     clip = rara.Clip("plane:z=25%") | rara.Cone((0, 0, 0), (0, 0, 1), 0.5)
     with pytest.raises(rara.InvalidError, match="scene is missing"):

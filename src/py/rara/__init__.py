@@ -1,7 +1,7 @@
 """rara draws 3D Gaussian Splatting scenes by Vulkan, and cuts them exactly."""
 
 from ._rara import Camera, Gaussians, Picture, compare, devices, orbit, path
-from .clips import Box, Capsule, Clip, Cone, Cylinder, Ellipsoid, Plane, Polygon, Slab, Sphere
+from .clips import Box, Capsule, Clip, Cone, Cylinder, Ellipsoid, Mesh, Plane, Polygon, Slab, Sphere
 from .drawing import Renderer, Shot, section, sweep, truth
 from .errors import (
     BudgetError, DeviceError, DeviceLostError, Error, FormatError, InvalidError, IoError, OutOfMemoryError, ValidationError,
@@ -14,7 +14,7 @@ generate = Gaussians.generate
 
 __all__ = [
     "BudgetError", "Box", "Camera", "Capsule", "Clip", "Cone", "Cylinder", "DeviceError", "DeviceLostError", "Ellipsoid",
-    "Error", "FormatError", "Gaussians", "InvalidError", "IoError", "Layer", "OutOfMemoryError", "Picture", "Plane",
+    "Error", "FormatError", "Gaussians", "InvalidError", "IoError", "Layer", "Mesh", "OutOfMemoryError", "Picture", "Plane",
     "Polygon", "Renderer", "Scene", "Shot", "Slab", "Sphere", "ValidationError", "VulkanError", "compare", "devices",
     "from_3dgs", "generate", "load", "orbit", "path", "rasterize", "section", "sweep", "truth",
 ]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from os import PathLike
+from os import PathLike, fspath
 from typing import TYPE_CHECKING, Optional, Union
 
 import numpy as np
@@ -160,3 +160,23 @@ class Polygon(Clip):
         between = "" if heights is None else f"={float(heights[0])!r}..{float(heights[1])!r}"
         pairs = (f"{float(u)!r},{float(v)!r}" for u, v in np.asarray(corners, np.float64))
         super().__init__(f"polygon:{axis}{between};" + ";".join(pairs))
+
+
+class Mesh(Clip):
+    """Keeps the inside of the closed mesh of a file, scaled, turned by a quaternion w, x, y, z, and then moved.
+
+    With `winding`, the mesh may be open or cut itself: its inside is where the winding number is not zero.
+    """
+
+    def __init__(
+        self,
+        path: Union[str, PathLike[str]],
+        *,
+        scale: float = 1.0,
+        rotation: Sequence[float] = (1.0, 0.0, 0.0, 0.0),
+        position: Sequence[float] = (0.0, 0.0, 0.0),
+        winding: bool = False,
+    ) -> None:
+        numbers = [",".join(repr(float(number)) for number in one) for one in ((scale,), rotation, position)]
+        parts = [f"{name}={text}" for name, text in zip(("scale", "turn", "at"), numbers)]
+        super().__init__(";".join([f"mesh:{fspath(path)}", *parts, *(["winding"] if winding else [])]))

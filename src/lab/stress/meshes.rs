@@ -33,12 +33,6 @@ pub fn regimes() -> Vec<Regime> {
         limited("a sheet thinner than a splat", || {
             cases(73, SMALL, shapes::sheet(20, 0.01))
         }),
-        limited("needles that meet in a vertex", || {
-            cases(74, SMALL, shapes::needle_fan(40))
-        }),
-        limited("shells in each other", || {
-            cases(75, SMALL, shapes::nested(3, 2))
-        }),
         limited("a mesh of 50 000 faces", || {
             cases(76, LARGE, shapes::star(50_000, 3))
         }),

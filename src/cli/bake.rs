@@ -52,7 +52,7 @@ pub(super) struct Bake {
     output: PathBuf,
     /// Replace the splats that this mode would cut in a picture
     ///
-    /// Mode hard cuts no splat: it keeps or drops each one as a whole, by its centre. Mode none drops and replaces nothing.
+    /// Mode hard cuts no splat: it keeps or drops each one as a whole, by its centre.
     #[arg(long, value_parser = values::named::<Mode>(), default_value = Mode::default().name())]
     mode: Mode,
     /// Mode rara: the radius of a splat's ellipsoid, in standard deviations [default: 3]
@@ -68,7 +68,7 @@ pub(super) struct Bake {
     /// tables that the command prints.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=3))]
     children: u32,
-    /// Leave splats whole if the clip keeps all within K standard deviations of their centres
+    /// Leave a splat whole if the clip keeps it up to K standard deviations from its centre
     ///
     /// With K up to 1, baking the result again with the same clip replaces nothing, or only a few Gaussians if
     /// the clip is not convex. K of about 1.5 follows the cut most closely.

@@ -30,9 +30,9 @@ pub struct CameraArgs {
     target: Option<DVec3>,
     /// Direction that is up in the picture, such as -y or 0,-1,0
     ///
-    /// Try y if the scene is upside down, and z or -z if it lies on its side. The default is the direction in the comment
-    /// "Vertical Axis" of a .ply. Without such a comment, it is -y. If rara frames the scene and finds cameras in the scene's
-    /// folder, the default is their mean up direction. For a section, the default depends on its axis. If the camera looks
+    /// Try y if the scene is upside down, and z or -z if it lies on its side. For a section, the default depends on
+    /// its axis. Otherwise it is the direction in the comment "Vertical Axis" of a .ply; else, if rara frames the scene and finds
+    /// cameras in the scene's folder, their mean up direction; else -y. If the camera looks
     /// along the up direction, rara takes z instead, or -y if the camera looks along z.
     #[arg(long, value_name = "X,Y,Z|AXIS", value_parser = values::direction, allow_hyphen_values = true)]
     #[arg(conflicts_with_all = ["cameras", "camera"])]

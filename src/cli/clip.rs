@@ -36,9 +36,9 @@ pub struct ClipArgs {
     /// {"clip":{"all":[...]}}. An element may have a "name". An element with a "layer" cuts only the layer of this name.
     /// --save-clip writes such files.
     ///
-    /// FILE:NAME takes the clips with this name, or the clip with this number, which counts from 0. FILE:* takes all clips. FILE
-    /// alone takes all clips if there is only one or if they have no names; otherwise, rara asks for a name. Clips of single layers
-    /// do not count here. They are always taken, unless NAME is the name of one of them: then only this one is taken.
+    /// FILE:NAME takes the clips with this name, or the clip with this number, which counts from 0. FILE:* takes all clips. The
+    /// clips that a file has for single layers are taken with any of these, unless NAME is the name of one of them: then only that one
+    /// is taken. FILE alone takes all other clips if there is only one or if they have no names; else rara asks for a name.
     #[arg(long, value_name = "FILE[:NAME]")]
     clip_file: Vec<String>,
     /// Write the clip to a JSON file for --clip-file

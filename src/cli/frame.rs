@@ -16,11 +16,11 @@ use super::settings::{DeviceArgs, SettingsArgs};
 pub(super) struct FrameArgs {
     #[command(flatten)]
     pub(super) clip: ClipArgs,
-    /// Keep what a polygon in the first picture holds, X,Y;X,Y;..., px (repeatable)
+    /// Keep what is seen within a polygon of the picture, X,Y;X,Y;..., px (repeatable)
     ///
     /// The clip keeps everything that is seen through the polygon, at every depth; with a leading ! it keeps the rest. Pixels are
     /// counted from the picture's top left corner, and a | begins the corners of a hole. If the command draws several pictures, the
-    /// polygon is one of the first picture, and the others show the same part of the scene. --save-clip saves it.
+    /// polygon is drawn in the first one, and the others show the same part of the scene. --save-clip saves it.
     #[arg(long, value_name = "CORNERS", value_parser = str::parse::<Lasso>, allow_hyphen_values = true, help_heading = "Clip")]
     lasso: Vec<Lasso>,
     #[command(flatten)]

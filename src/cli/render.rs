@@ -55,8 +55,8 @@ Examples:
 
 Pictures: .png is 8-bit RGBA, un-premultiplied; .exr is 32-bit float RGBA, premultiplied.
 
-The printed counts are numbers of splats: the clip keeps visible ones whole, cuts cutoff ones, and removes invisible ones; \
-culled ones are out of view, too faint or hidden.")]
+The program prints how many splats are `visible` (the clip keeps them whole), `cutoff` (it cuts them), `invisible` (it removes \
+them) and `culled` (they are out of view, too faint or hidden).")]
 pub(super) struct Render {
     /// A picture (.png, .exr, .npy) or film (.apng, .mp4, .mov, .mkv, .webm); - is stdout
     ///

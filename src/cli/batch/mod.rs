@@ -42,7 +42,8 @@ are relative to the working directory.
 \"for\": {\"z\": \"0..100:101\", \"scan\": [\"a\", \"b\"]} makes one job for each combination of its values. 0..9 stands \
 for the whole numbers from 0 to 9, and 0..1:11 for 11 numbers from 0 to 1 in equal steps. In the other keys of the job, \
 ${z} stands for the value of z, and ${z:03} for the value with leading zeros. \"zip\": {\"z\": \"0..100:5\", \"view\": \
-\"0..4\"} makes one job for each step of its names, which change together.
+\"0..4\"} makes five jobs: z and view take \
+their first values in the first job, their second values in the second one, and so on.
 
 Workers record finished pictures in the folder of --state and do not draw them again. Workers on several machines may \
 share this folder. In an array job of Slurm or SGE, each task draws its part. Tasks of Kubernetes and PBS do so too if \
@@ -57,7 +58,7 @@ pub(super) struct Batch {
     /// All parts take about equally long. The same K and N always give the same part.
     #[arg(long, value_name = "K/N", alias = "shard")]
     part: Option<RunPart>,
-    /// Folder that records finished pictures [default: the first file's name plus .done]
+    /// Folder that records finished pictures [default: the first file's name plus .done; needed for standard input]
     #[arg(long, value_name = "DIR")]
     state: Option<PathBuf>,
     /// Redraw pictures whose job has changed, or that another version or driver drew

@@ -156,8 +156,8 @@ impl FilmArgs {
         };
         if self.alpha && kind.is_none() {
             return Err(Failure::Usage(
-                "--alpha is for films; pictures keep their transparency without it: leave out --alpha, or give -o a name that ends in \
-                 .mov or .webm"
+                "--alpha is for films in .mov and .webm, because other films have no transparency and pictures always keep theirs: leave \
+                 out --alpha, or give -o a name that ends in .mov or .webm"
                     .into(),
             ));
         }

@@ -77,7 +77,7 @@ The clip:
   drag DX,DY                       moves the held shape, pixels
   tilt DX,DY                       turns the held shape, degrees
   scale FACTOR                     makes the held shape larger or smaller
-  edit frame, N|NAME, next         edits the clip of all layers, or a layer's own
+  edit frame, N|NAME, next         edits the clip of all layers (frame), or that of one layer
   edit release                     removes the edited layer's own clip
   clip next                        takes the next clip of a dropped file
   lasso X,Y;X,Y;...                keeps what this polygon holds, pixels; with a leading ! the rest
@@ -98,7 +98,7 @@ The window:
   repeat N ACTION                  does an action N times
   quit                             closes the window"))]
 pub(super) struct ViewCommand {
-    /// File names of screenshots, .png or .exr; {} becomes the number
+    /// File names of screenshots, .png, .exr or .npy; {} becomes the number
     #[arg(short, long, value_name = "OUT", default_value = "view_{}.png", value_parser = values::picture_file())]
     output: PathBuf,
     /// Run the actions in a file, one per line; - reads standard input

@@ -39,12 +39,12 @@ Keys:
   9                            show or hide a tint along the edge of each cut face
   Backspace or Ctrl+Z          take back the last change of a clip
   B                            outlines of the shapes on or off
-  F1 to F9                     layer 1 to 9 on or off (Shift: its opacity; Ctrl: its tint)
+  F1 to F9                     layer 1 to 9 on or off (Shift: next opacity; Ctrl: next tint)
   L                            edit the next layer's own clip; after the last, the clip of all
   U                            remove the edited layer's own clip
   M                            show or hide the mode and the clip's numbers
   C or F12                     screenshot
-  F                            print the flags that draw this picture on the terminal
+  F                            print on the terminal the flags that draw this picture
   T                            print the times and counts of the stages on the terminal
   H                            show or hide this list
   Esc                          quit

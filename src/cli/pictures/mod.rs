@@ -196,7 +196,7 @@ impl PictureArgs {
                     None => OutputTarget::Files(file),
                 });
             }
-            Err(why) if !is_folder && !(several && may_be_a_folder(output)) => {
+            Err(why) if !(is_folder || several && may_be_a_folder(output)) => {
                 return Err(Failure::Usage(format!("{}: {why}", output.display())));
             }
             _ => {}

@@ -376,7 +376,7 @@ fn a_mesh_is_a_clip_like_any_other() {
     let way = "sweep @/scene.ply --frames 3 --size 32x24 -o @/way_{}.exr";
     let ends = "--from mesh:@/cube.obj;scale=0.2 --to mesh:@/cube.obj;scale=0.6;at=0.4,0,0";
     done(line(&here, &format!("{way} {ends}")));
-    let middle = Picture::load(here.join("way_0001.exr")).expect("a picture");
+    let middle = Picture::load(here.join("way_1.exr")).expect("a picture");
     let clip = "--size 32x24 --clip mesh:@/cube.obj;scale=0.4;at=0.2,0,0";
     done(line(
         &here,

@@ -1,7 +1,7 @@
 //! Everything that the fuzz targets share: a limit on memory by the input's size, and the checks of whatever loads.
 
 use std::alloc::{GlobalAlloc, Layout, System};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rara::camera_files::{NamedCamera, cameras_from_json};
@@ -43,6 +43,13 @@ pub fn within<T>(base: usize, each: usize, input: &[u8], work: impl FnOnce() -> 
     let result = work();
     LIMIT.store(usize::MAX, Ordering::Relaxed);
     result
+}
+
+/// Writes the input to a file of this process, for what reads files only.
+pub fn kept_in(name: &str, input: &[u8]) -> PathBuf {
+    let path = std::env::temp_dir().join(format!("rara-fuzz-{}-{name}", std::process::id()));
+    std::fs::write(&path, input).expect("a file in the folder of temporary files");
+    path
 }
 
 /// Asserts that everything is finite, rotations are unit, scales not negative, opacities from 0 to 1, arrays of one
@@ -125,6 +132,7 @@ pub fn assert_surface(surface: &Surface) {
             assert!(quadric.matrix().is_finite() && quadric.constant().is_finite(), "{quadric:?}");
             assert_eq!(quadric.flipped().flipped(), *quadric);
         }
+        Surface::Inside(inside) => assert_eq!(inside.flipped().flipped(), *inside),
     }
 }
 

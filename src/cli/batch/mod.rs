@@ -58,7 +58,9 @@ pub(super) struct Batch {
     /// All parts take about equally long. The same K and N always give the same part.
     #[arg(long, value_name = "K/N", alias = "shard")]
     part: Option<RunPart>,
-    /// Folder that records finished pictures [default: the first file's name plus .done; needed for standard input]
+    /// Folder that records finished pictures [default: the first file's name plus .done]
+    ///
+    /// Jobs from standard input have no file, so that they need this flag.
     #[arg(long, value_name = "DIR")]
     state: Option<PathBuf>,
     /// Redraw pictures whose job has changed, or that another version or driver drew

@@ -32,7 +32,7 @@ memory! { CutPlan:
         most * size_of::<SurfaceData>() as u64
     };
     /// The meshes that these are the insides of, each with the hierarchy of its faces; empty without any.
-    meshes: |plan| size_of_val(plan.layers.meshes()) as u64;
+    meshes: |plan| plan.layers.meshes().bytes();
     /// The clip's sides of the blocks; empty without a clip.
     clip_sides: |plan| when_clipped(plan, 4 * plan.blocks());
     /// The clip's masks of the blocks; empty without a clip.

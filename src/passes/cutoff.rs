@@ -29,7 +29,7 @@ pub(crate) static STAGE_OF_RECLIP: Stage<EyePlan> = Stage {
 memory! { EyePlan:
     /// The records of cutoff Gaussians and, behind them, the meshes of the clip, as pixels walk them.
     cut_records: |plan| match plan.cut.cuts() {
-        true => 16 * u64::from(plan.data.weight.meshes) + size_of_val(plan.cut.layers.meshes()) as u64,
+        true => 16 * u64::from(plan.data.weight.meshes) + plan.cut.layers.meshes().bytes(),
         false => 0,
     };
 }

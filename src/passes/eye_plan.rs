@@ -327,7 +327,7 @@ fn weight_data(cut: &CutPlan, settings: &Settings, switch: f32) -> Result<Weight
     let records = cut.gaussians() + u64::from(long_strides);
     let has_room = cut_stride == 0 || records <= u64::from(limits::MAX_RECORDS);
     let meshes = records * u64::from(cut_stride);
-    if !has_room || meshes + layers.meshes().len() as u64 > u64::from(u32::MAX) {
+    if !has_room || meshes + layers.meshes().quads() > u64::from(u32::MAX) {
         return Err(Error::Invalid(format!(
             "{} cut by {} are beyond what a frame can address; use fewer or split the scene",
             counted(cut.data.scene.gaussian_count, "Gaussian"),

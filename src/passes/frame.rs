@@ -118,8 +118,9 @@ fn write_cut(plan: &CutPlan, recorder: &mut Recorder<'_>, buffers: &Buffers<CutP
     if plan.clips() {
         let surfaces = cast_slice(plan.layers.surfaces());
         recorder.update(buffers.get(&memory.surfaces), 0, surfaces);
-        let meshes = cast_slice(plan.layers.meshes());
-        recorder.update(buffers.get(&memory.meshes), 0, meshes);
+        for (at, quads) in plan.layers.meshes().placed() {
+            recorder.update(buffers.get(&memory.meshes), at, cast_slice(quads));
+        }
     }
 }
 

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
+use crate::passes::meshes::Meshes;
 use crate::passes::scene_layer::SceneLayer;
 use crate::passes::view::layer_view;
 use crate::passes::{region, work};
@@ -14,16 +15,13 @@ use rara_base::limits;
 use rara_scene::camera::Camera;
 use rara_scene::clip::Clip;
 
-/// The meshes of surfaces as shaders read them, one behind the other.
-pub(super) type MeshQuads = Vec<[u32; 4]>;
-
 /// The most entries of a record that a mesh needs: it is four planes, or a walk of three entries.
 const MESH_ENTRIES: u32 = 4;
 
 /// The layers of a cut and their surfaces. A copy has the same ones.
 #[derive(Debug, Clone)]
 pub(crate) struct CutLayers {
-    lists: Arc<(Vec<CutLayer>, Vec<SurfaceData>, MeshQuads)>,
+    lists: Arc<(Vec<CutLayer>, Vec<SurfaceData>, Meshes)>,
 }
 
 impl CutLayers {
@@ -37,7 +35,7 @@ impl CutLayers {
     ) -> Result<Self> {
         let has_region = region.mode != types::MODE_NONE;
         let (mut layers, mut surfaces) = (Vec::<CutLayer>::with_capacity(scene.len()), Vec::new());
-        let mut meshes = region::Meshes::default();
+        let mut meshes = Meshes::default();
         for (index, layer) in scene.iter().enumerate() {
             let mut data = CutLayer {
                 content: LayerContent {
@@ -74,7 +72,7 @@ impl CutLayers {
             layers.push(data);
         }
         Ok(Self {
-            lists: Arc::new((layers, surfaces, meshes.quads)),
+            lists: Arc::new((layers, surfaces, meshes)),
         })
     }
 
@@ -89,7 +87,7 @@ impl CutLayers {
     }
 
     /// The meshes that some of these are.
-    pub(crate) fn meshes(&self) -> &[[u32; 4]] {
+    pub(crate) fn meshes(&self) -> &Meshes {
         &self.lists.2
     }
 

@@ -20,6 +20,7 @@ mod frame;
 mod laws;
 mod layers;
 mod lines;
+mod meshes;
 pub(crate) mod motion;
 mod occluders;
 mod owner;

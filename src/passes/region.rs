@@ -1,18 +1,15 @@
 //! The regions that the clip keeps, as the shaders read them: what all layers' regions have in common, and the surfaces of
 //! one.
 
-use std::collections::HashMap;
-
 use glam::{DMat3, DVec3};
 
-use crate::passes::layers::MeshQuads;
+use crate::passes::meshes::Meshes;
 use crate::types::{self, RegionData};
 use rara_base::error::Result;
 use rara_base::limits;
 use rara_gpu::DeviceShape;
 use rara_scene::clip::postfix::postfix;
 use rara_scene::clip::{Clip, ClipOp, Inside, Plane, Quadric, Surface};
-use rara_scene::mesh::Mesh;
 use rara_scene::settings::{Mode, Settings};
 
 /// The largest distance of a surface that is not taken for infinity, in the layer's units. It lies beyond every splat: a power of two
@@ -79,25 +76,6 @@ pub(super) fn surfaces(
         .collect()
 }
 
-/// The meshes of a cut, each of which is there once.
-#[derive(Debug, Default)]
-pub(super) struct Meshes {
-    pub(super) quads: MeshQuads,
-    first: HashMap<Mesh, u32>,
-}
-
-impl Meshes {
-    /// The first quad of a mesh.
-    fn place(&mut self, mesh: &Mesh) -> u32 {
-        let quads = &mut self.quads;
-        *self.first.entry(mesh.clone()).or_insert_with(|| {
-            let first = quads.len() as u32;
-            quads.extend(mesh.packed().quads);
-            first
-        })
-    }
-}
-
 fn packed(
     surface: &Surface,
     operators: &[ClipOp],
@@ -107,7 +85,7 @@ fn packed(
     let mut data = match surface {
         Surface::Plane(plane) => plane_data(plane),
         Surface::Quadric(quadric) => quadric_data(quadric, corners),
-        Surface::Inside(inside) => mesh_data(inside, meshes.place(inside.mesh())),
+        Surface::Inside(inside) => mesh_data(inside, meshes.place(inside.mesh()) as u32),
     };
     data.operators = operators.len() as u32;
     for (place, op) in operators.iter().enumerate() {

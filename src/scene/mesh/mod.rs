@@ -67,6 +67,8 @@ struct Content {
     made: Faces,
     /// As [`Edges::twins`], once they are asked for.
     twins: OnceLock<Vec<u32>>,
+    /// As [`Mesh::packed`], once it is asked for.
+    packed: OnceLock<PackedMesh>,
     rule: MeshRule,
     tree: MeshTree,
     centre: DVec3,
@@ -142,6 +144,7 @@ impl Mesh {
             scale: 0.5 * (high - low).max_element(),
             made,
             twins: OnceLock::new(),
+            packed: OnceLock::new(),
             rule,
             tree,
             report,

@@ -44,8 +44,12 @@ pub struct PackedNode {
 }
 
 impl Mesh {
-    /// The mesh as shaders read it.
-    pub fn packed(&self) -> PackedMesh {
+    /// The mesh as shaders read it, which is made once for all copies.
+    pub fn packed(&self) -> &PackedMesh {
+        self.0.packed.get_or_init(|| self.pack())
+    }
+
+    fn pack(&self) -> PackedMesh {
         let nodes = self.tree().nodes();
         let (count, faces) = (nodes.len(), self.faces().len());
         let first = 1 + 2 * count;

@@ -87,7 +87,70 @@ UnitSurface seen_surface(uint base, uint entry, inout mat3 map) {
     return kind == 0.0 || kind == ENTRY_PLANE ? entry_of(base, entry) : UnitSurface(vec4(0.0), vec3(0.0), vec3(0.0));
 }
 
-// What a half-line meets of a mesh: the nearest crossing, how the winding number grows there, and how often the mesh winds around where
+// A node of the hierarchy, its box about the centre. Where it is entered, its faces come next and then the node behind it, else `skip`.
+struct WalkedNode {
+    vec3 low, high;
+    uint skip;
+    uint first, count; // faces
+};
+
+WalkedNode walked_node(Faces faces, uint at) {
+    vec4 low = cut_records.at[faces.root + 1u + 2u * at];
+    vec4 high = cut_records.at[faces.root + 2u + 2u * at];
+    uint leaf = floatBitsToUint(high.w);
+    return WalkedNode(low.xyz - faces.centre, high.xyz - faces.centre, floatBitsToUint(low.w), leaf >> 3, leaf & 7u);
+}
+
+// A walk over a group: over its faces, or over those of the nodes that are entered.
+struct FaceWalk {
+    uint nodes;
+    uint corners; // where those of the hierarchy begin
+    uint node;
+    uint face, left; // faces
+};
+
+FaceWalk face_walk(Faces faces) {
+    if (!faces.is_walked) {
+        return FaceWalk(0u, 0u, 0u, faces.first, faces.count);
+    }
+    uvec4 head = floatBitsToUint(cut_records.at[faces.root]);
+    return FaceWalk(head.x, faces.root + head.z, 0u, 0u, 0u);
+}
+
+// True where the walk is at a node, which `enter` leaves.
+bool is_at_node(FaceWalk walk) {
+    return walk.left == 0u && walk.node < walk.nodes;
+}
+
+void enter(inout FaceWalk walk, WalkedNode node, bool enters) {
+    walk.left = enters ? node.count : 0u;
+    walk.face = node.first;
+    walk.node = enters ? walk.node + 1u : node.skip;
+}
+
+// Takes the next face of a walk, in the space of the faces. Returns false behind the last one.
+bool takes_face(uint base, Faces faces, inout FaceWalk walk, out Face face) {
+    if (walk.left == 0u) {
+        return false;
+    }
+    if (faces.is_walked) {
+        // Nine words without gaps, which begin at any place of a quad.
+        float words[9];
+        uint first = 9u * walk.face;
+        for (uint k = 0u; k < 9u; k++) {
+            words[k] = cut_records.at[walk.corners + (first + k >> 2)][first + k & 3u];
+        }
+        face = Face(vec3(words[0], words[1], words[2]) - faces.centre, vec3(words[3], words[4], words[5]) - faces.centre,
+            vec3(words[6], words[7], words[8]) - faces.centre);
+    } else {
+        face = face_of(base, walk.face);
+    }
+    walk.face++;
+    walk.left--;
+    return true;
+}
+
+// The part of a mesh that a half-line meets: the nearest crossing, how the winding number grows there, and how often the mesh winds around where
 // it begins.
 struct Ahead {
     float t;
@@ -98,50 +161,35 @@ struct Ahead {
 // How far rounding may move what is compared with a node's box, relatively.
 const float WALK_ROUNDING = 1e-6;
 
-// A face of the hierarchy, about the centre.
-Face walked_face(Faces faces, uvec4 head, uint face) {
-    // Nine words without gaps, which begin at any place of a quad.
-    float words[9];
-    uint first = 9u * face;
-    for (uint k = 0u; k < 9u; k++) {
-        words[k] = cut_records.at[faces.root + head.z + (first + k >> 2)][first + k & 3u];
-    }
-    return Face(vec3(words[0], words[1], words[2]) - faces.centre, vec3(words[3], words[4], words[5]) - faces.centre,
-        vec3(words[6], words[7], words[8]) - faces.centre);
-}
-
-// Walks a mesh's hierarchy for the part of a line behind `from`. Where faces do not cut each other, nothing behind the nearest crossing
+// Walks the hierarchy of a group that has one for the part of a line behind `from`. Where faces do not cut each other, nothing behind the nearest crossing
 // counts.
 Ahead looked_ahead(Faces faces, FaceLine line, float from) {
     Ahead ahead = Ahead(1e30, 0.0, 0.0);
-    uvec4 head = floatBitsToUint(cut_records.at[faces.root]);
-    for (uint at = 0u; at < head.x;) {
-        vec4 low = cut_records.at[faces.root + 1u + 2u * at];
-        vec4 high = cut_records.at[faces.root + 2u + 2u * at];
-        vec3 a = turned_to_axis(low.xyz - faces.centre - line.origin, line.axis);
-        vec3 b = turned_to_axis(high.xyz - faces.centre - line.origin, line.axis);
-        vec2 near = line.slope * a.z;
-        vec2 far = line.slope * b.z;
-        vec2 ends = vec2(a.z, b.z) / line.speed;
-        vec2 slack = WALK_ROUNDING * (max(abs(a.xy), abs(b.xy)) + max(abs(near), abs(far)));
-        bool passes = all(lessThanEqual(a.xy - max(near, far), slack)) && all(greaterThanEqual(b.xy - min(near, far), -slack));
-        if (!passes || max(ends.x, ends.y) < from || (!faces.overlaps && min(ends.x, ends.y) > ahead.t)) {
-            at = floatBitsToUint(low.w);
-            continue;
+    for (FaceWalk walk = face_walk(faces);;) {
+        while (is_at_node(walk)) {
+            WalkedNode node = walked_node(faces, walk.node);
+            vec3 low = turned_to_axis(node.low - line.origin, line.axis);
+            vec3 high = turned_to_axis(node.high - line.origin, line.axis);
+            vec2 near = line.slope * low.z;
+            vec2 far = line.slope * high.z;
+            vec2 ends = vec2(low.z, high.z) / line.speed;
+            vec2 slack = WALK_ROUNDING * (max(abs(low.xy), abs(high.xy)) + max(abs(near), abs(far)));
+            bool passes = all(lessThanEqual(low.xy - max(near, far), slack)) && all(greaterThanEqual(high.xy - min(near, far), -slack));
+            bool counts = max(ends.x, ends.y) >= from && (faces.overlaps || min(ends.x, ends.y) <= ahead.t);
+            enter(walk, node, passes && counts);
         }
-        uint leaf = floatBitsToUint(high.w);
-        for (uint i = 0u; i < (leaf & 7u); i++) {
-            float here;
-            float grows = face_crossing(line, walked_face(faces, head, (leaf >> 3) + i), here);
-            if (grows != 0.0 && here > from) {
-                ahead.winding -= grows;
-                ahead.grows = here < ahead.t ? grows : ahead.grows;
-                ahead.t = min(ahead.t, here);
-            }
+        Face face;
+        if (!takes_face(0u, faces, walk, face)) {
+            return ahead;
         }
-        at++;
+        float here;
+        float grows = face_crossing(line, face, here);
+        if (grows != 0.0 && here > from) {
+            ahead.winding -= grows;
+            ahead.grows = here < ahead.t ? grows : ahead.grows;
+            ahead.t = min(ahead.t, here);
+        }
     }
-    return ahead;
 }
 
 // True where the mesh is around the points just before what is ahead.

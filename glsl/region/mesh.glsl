@@ -92,7 +92,7 @@ float mesh_distance(uint surface, vec3 position) {
     return is_inside != mesh_keeps_outside(surface) ? 1.0 : -1.0;
 }
 
-// What rounding may move a place of the mesh's space by.
+// Rounding moves a place of the mesh's space by no more than this.
 const float MESH_ROUNDING = 1e-6;
 
 // All faces that come into a box.

@@ -111,25 +111,16 @@ uint faces_side(uint base, uint flags, TileSight tile) {
     vec3 along = points.deviations * (faces.map * points.along);
     mat3 rows = transpose(faces.map);
     vec3 reach = abs(along) + points.aside * vec3(length(rows[0]), length(rows[1]), length(rows[2]));
-    uvec4 head = faces.is_walked ? floatBitsToUint(cut_records.at[faces.root]) : uvec4(0u);
-    uint node = 0u;
-    uint face = faces.first;
-    uint left = faces.is_walked ? 0u : faces.count;
-    for (;; face++, left--) {
-        while (left == 0u && node < head.x) {
-            vec4 low = cut_records.at[faces.root + 1u + 2u * node];
-            vec4 high = cut_records.at[faces.root + 2u + 2u * node];
-            vec3 from = abs(0.5 * (low.xyz + high.xyz) - faces.centre - middle);
-            bool is_near = all(lessThanEqual(from, reach + 0.5 * (high.xyz - low.xyz)));
-            uint leaf = floatBitsToUint(high.w);
-            left = is_near ? leaf & 7u : 0u;
-            face = leaf >> 3;
-            node = is_near ? node + 1u : floatBitsToUint(low.w);
+    for (FaceWalk walk = face_walk(faces);;) {
+        while (is_at_node(walk)) {
+            WalkedNode node = walked_node(faces, walk.node);
+            vec3 from = abs(0.5 * (node.low + node.high) - middle);
+            enter(walk, node, all(lessThanEqual(from, reach + 0.5 * (node.high - node.low))));
         }
-        if (left == 0u) {
+        Face here;
+        if (!takes_face(base, faces, walk, here)) {
             break;
         }
-        Face here = faces.is_walked ? walked_face(faces, head, face) : face_of(base, face);
         vec3 low = min(min(here.a, here.b), here.c) - middle;
         vec3 high = max(max(here.a, here.b), here.c) - middle;
         vec3 normal = cross(here.b - here.a, here.c - here.a);

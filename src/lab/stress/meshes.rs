@@ -9,9 +9,9 @@ use rara::clip::{ClipOp, Inside};
 use rara::{Clip, Mesh, MeshRule, Placement};
 use rara_scene::mesh::shapes::{self, Triangles};
 
-/// Four thousandths of a splat are a level of 255.
-const LINES: &str = "what is left of a splat that many faces cut is the mean of up to 121 lines through it, of which some pass a face that \
-                     others meet";
+/// A limit of one level of 255.
+const FITTED: &str = "a sheet of small faces is drawn as the quadric that fits it, if no pixel's alpha changes by more than half a level, and the \
+                      sum over faces has four points on an edge";
 
 pub fn regimes() -> Vec<Regime> {
     vec![
@@ -33,6 +33,9 @@ pub fn regimes() -> Vec<Regime> {
         limited("a sheet thinner than a splat", || {
             cases(73, SMALL, shapes::sheet(20, 0.01))
         }),
+        limited("shells in each other", || {
+            cases(75, SMALL, shapes::nested(3, 2))
+        }),
         limited("a mesh of 50 000 faces", || {
             cases(76, LARGE, shapes::star(50_000, 3))
         }),
@@ -44,7 +47,7 @@ const SMALL: [f64; 2] = [0.2, 6.0];
 const LARGE: [f64; 2] = [2.0, 12.0];
 
 fn limited(name: &'static str, cases: fn() -> Vec<Case>) -> Regime {
-    Regime::new(name, cases).limited(4e-3, 50.0, LINES)
+    Regime::new(name, cases).limited(4e-3, 50.0, FITTED)
 }
 
 /// Few splats, each cut by what many faces leave: the truth looks at all of these.

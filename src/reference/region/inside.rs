@@ -6,7 +6,7 @@ use super::face_mass::mesh_share;
 use super::quadric::Symmetric;
 use super::region_surface::RegionSurface;
 use super::{Ellipsoid, HalfSpace, Side, UnitSurface};
-use crate::real::{Real, Vec3, vec3};
+use crate::real::{Real, Vec3};
 use rara_scene::clip::{Inside, Surface};
 use rara_scene::mesh::MeshRule;
 
@@ -24,9 +24,15 @@ fn wide<T: Real>(v: Vec3<T>) -> DVec3 {
     DVec3::new(v.x.wide(), v.y.wide(), v.z.wide())
 }
 
-fn axes_of<T: Real>(ellipsoid: &Ellipsoid<T>) -> DMat3 {
-    let [u, v, w] = ellipsoid.axes.map(wide);
+fn columns<T: Real>(vectors: [Vec3<T>; 3]) -> DMat3 {
+    let [u, v, w] = vectors.map(wide);
     DMat3::from_cols(u, v, w)
+}
+
+/// Vectors of the layer in the space of a mesh that stands there.
+fn in_mesh(inside: &Inside, vectors: DMat3) -> DMat3 {
+    let there = inside.placement();
+    DMat3::from_quat(there.rotation().inverse()) * vectors * (1.0 / there.scale())
 }
 
 impl<T: Real> UnitInside<T> {
@@ -34,7 +40,7 @@ impl<T: Real> UnitInside<T> {
         Self {
             inside: inside.clone(),
             centre: ellipsoid.centre,
-            axes: axes_of(ellipsoid),
+            axes: columns(ellipsoid.axes),
             nearest: inside.unit_surface(ellipsoid),
         }
     }
@@ -42,16 +48,16 @@ impl<T: Real> UnitInside<T> {
     /// The share that the mesh keeps of a normal distribution of this mean and these deviations, in the unit space; none where its faces
     /// cut each other, or where the distribution has no width.
     pub(super) fn share(&self, mean: Vec3<T>, deviations: [Vec3<T>; 3]) -> Option<T> {
-        let (mesh, there) = (self.inside.mesh(), self.inside.placement());
-        let turn = DMat3::from_quat(there.rotation().inverse());
-        let [u, v, w] = deviations.map(wide);
-        let across = turn * self.axes * DMat3::from_cols(u, v, w) * (1.0 / there.scale());
-        let is_flat = u.cross(v).dot(w).abs() < 1e-12 * u.length_squared().max(1e-30);
+        let mesh = self.inside.mesh();
+        let deviations = columns(deviations);
+        let longest = deviations.x_axis.length_squared();
+        let is_flat = deviations.determinant().abs() < 1e-12 * longest.max(1e-30);
         if is_flat || mesh.rule() != MeshRule::Closed {
             return None;
         }
-        let centre = there.to_scene(self.centre + self.axes * wide(mean));
-        let share = mesh_share(mesh, centre, across);
+        let mean = self.centre + self.axes * wide(mean);
+        let there = self.inside.placement().to_scene(mean);
+        let share = mesh_share(mesh, there, in_mesh(&self.inside, self.axes * deviations));
         Some(T::of(if self.inside.keeps_outside() {
             1.0 - share
         } else {
@@ -93,10 +99,8 @@ fn side_of(inside: &Inside, point: DVec3) -> Side {
 
 impl RegionSurface for Inside {
     fn gaussian_side<T: Real>(&self, ellipsoid: &Ellipsoid<T>, deviations: T) -> Side {
-        let there = self.placement();
-        let turn = DMat3::from_quat(there.rotation().inverse());
-        let axes = turn * axes_of(ellipsoid) * (1.0 / there.scale());
-        let centre = there.to_scene(ellipsoid.centre);
+        let axes = in_mesh(self, columns(ellipsoid.axes));
+        let centre = self.placement().to_scene(ellipsoid.centre);
         match self.mesh().touches_ball(centre, axes, deviations.wide()) {
             true => Side::Cutoff,
             false => side_of(self, ellipsoid.centre),
@@ -114,13 +118,10 @@ impl RegionSurface for Inside {
     /// The plane of the nearest face.
     fn unit_surface<T: Real>(&self, ellipsoid: &Ellipsoid<T>) -> UnitSurface<T> {
         let surface = Surface::from(self.clone());
-        let n = Vec3::of(surface.gradient(ellipsoid.centre));
-        let [u, v, w] = ellipsoid.axes;
+        let gradient = surface.gradient(ellipsoid.centre);
+        let distance = self.distance(ellipsoid.centre);
         UnitSurface {
-            half_space: HalfSpace {
-                normal: vec3(u.dot(n), v.dot(n), w.dot(n)),
-                offset: T::of(self.distance(ellipsoid.centre)),
-            },
+            half_space: HalfSpace::of_plane(ellipsoid, gradient, distance),
             bend: Symmetric::zero(),
         }
     }

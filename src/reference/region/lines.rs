@@ -71,7 +71,7 @@ fn unit<T: Real>(v: Vec3<T>) -> Vec3<T> {
     }
 }
 
-/// What a surface keeps of a line: a stretch, or what a mesh keeps between places where that changes.
+/// A surface keeps a stretch of a line; a mesh keeps what lies between places where that changes.
 enum Kept<T> {
     Stretch(Stretch<T>),
     Changes(bool, Vec<T>),

@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::quadric::Symmetric;
 use super::region_surface::RegionSurface;
 use super::{Ellipsoid, HalfSpace, Side, UnitSurface};
-use crate::real::{Real, Vec3, vec3};
+use crate::real::Real;
 use rara_scene::clip::Plane;
 
 impl RegionSurface for Plane {
@@ -32,13 +32,9 @@ impl RegionSurface for Plane {
     }
 
     fn unit_surface<T: Real>(&self, ellipsoid: &Ellipsoid<T>) -> UnitSurface<T> {
-        let n = Vec3::of(self.normal());
-        let [u, v, w] = ellipsoid.axes;
+        let distance = self.distance(ellipsoid.centre);
         UnitSurface {
-            half_space: HalfSpace {
-                normal: vec3(u.dot(n), v.dot(n), w.dot(n)),
-                offset: T::of(self.distance(ellipsoid.centre)),
-            },
+            half_space: HalfSpace::of_plane(ellipsoid, self.normal(), distance),
             bend: Symmetric::zero(),
         }
     }

@@ -218,7 +218,6 @@ impl RegionSurface for Quadric {
 
     fn unit_surface<T: Real>(&self, ellipsoid: &Ellipsoid<T>) -> UnitSurface<T> {
         let &Ellipsoid { centre, axes } = ellipsoid;
-        let gradient = Vec3::of(self.gradient(centre));
         let columns = self.matrix().to_cols_array_2d();
         let element = |i: usize, j: usize| T::of(columns[j][i]);
         let matrix = Symmetric {
@@ -227,14 +226,11 @@ impl RegionSurface for Quadric {
         };
         let turned = axes.map(|axis| matrix.times(axis));
         UnitSurface {
-            half_space: HalfSpace {
-                normal: vec3(
-                    axes[0].dot(gradient),
-                    axes[1].dot(gradient),
-                    axes[2].dot(gradient),
-                ),
-                offset: T::of(self.distance(centre)),
-            },
+            half_space: HalfSpace::of_plane(
+                ellipsoid,
+                self.gradient(centre),
+                self.distance(centre),
+            ),
             bend: Symmetric {
                 diagonal: vec3(
                     axes[0].dot(turned[0]),

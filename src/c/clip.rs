@@ -14,9 +14,9 @@ use crate::handles::{alive, create, destroy};
 use crate::settings::choice;
 use crate::text::{self, text};
 
-/// The region that stays visible, made of planes, slabs, boxes, spheres, ellipsoids, cylinders, capsules,
-/// cones, prisms and meshes. Where a
-/// function takes one, null means everything. It does not change; several threads, renderers and layers may use it at once.
+/// The region that stays visible, made of planes, slabs, boxes, spheres, ellipsoids, cylinders, capsules, cones, prisms and
+/// meshes. Where a function takes one, null means everything. It does not change; several threads, renderers and layers may use
+/// it at once.
 pub struct RaraClip(pub(crate) Clip);
 
 /// A half-space: the points x with normal . x + offset >= 0 are visible. The normal need not have length one, but must
@@ -81,7 +81,7 @@ pub unsafe extern "C" fn rara_clip_parse(
     })
 }
 
-/// What the inside of a mesh is.
+/// The rule by which a point is inside of a mesh.
 pub type RaraMeshRule = u32;
 /// The mesh is closed and does not cut itself; its shells lie in each other or apart.
 pub const RARA_MESH_RULE_CLOSED: RaraMeshRule = 0;

@@ -53,7 +53,7 @@ pub(super) struct Bake {
     /// Replace the splats that this mode would cut in a picture
     ///
     /// Mode hard cuts no splat: it keeps or drops each one as a whole, by its centre.
-    #[arg(long, value_parser = values::named::<Mode>(), default_value = Mode::default().name())]
+    #[arg(long, value_parser = values::named_but::<Mode>(Mode::None.name()), default_value = Mode::default().name())]
     mode: Mode,
     /// Mode rara: the radius of a splat's ellipsoid, in standard deviations [default: 3]
     ///
@@ -202,11 +202,6 @@ impl Bake {
         let clip = self.clip.meant()?;
         if clip.is_empty() && !self.scenes.may_have_clips(entries) {
             return Err(no_clip());
-        }
-        if self.mode == Mode::None {
-            return Err(Failure::Usage(
-                "--mode none cuts nothing, so that there is nothing to bake; use exact, rara or hard".into(),
-            ));
         }
         Ok(clip)
     }

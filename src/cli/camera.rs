@@ -228,11 +228,17 @@ impl CameraArgs {
         if let Some(file) = self.chosen_file() {
             return Ok(file.to_owned());
         }
-        let found = trained_folder::cameras_of(scenes).ok_or_else(|| {
-            Failure::Usage(format!(
+        let Some(found) = trained_folder::cameras_of(scenes) else {
+            for scene in scenes
+                .iter()
+                .filter(|scene| *scene != Path::new(output::STANDARD))
+            {
+                std::fs::metadata(scene).map_err(rara::Error::io(scene))?;
+            }
+            return Err(Failure::Usage(format!(
                 "{flag}: no cameras are in the scene, and no cameras.json or transforms.json is in its folder; name one by --cameras"
-            ))
-        })?;
+            )));
+        };
         output::say(format_args!(
             "note: the cameras are those of {}",
             found.display()

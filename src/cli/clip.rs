@@ -300,12 +300,15 @@ fn load(path: &Path) -> Result<Vec<NamedClip>, Failure> {
 
 /// The clips of `FILE` or `FILE:NAME`. Names and paths may hold colons: a file that exists goes before a name.
 fn from_file(text: &str) -> Result<Vec<NamedClip>, Failure> {
-    let is_file = |at: usize| Path::new(&text[..at]).is_file();
-    let named = if is_file(text.len()) {
+    let is_file = |at: &usize| Path::new(&text[..*at]).is_file();
+    let named = if is_file(&text.len()) {
         None
     } else {
-        let mut colons = text.match_indices(':').map(|(at, _)| at);
-        colons.find(|at| is_file(*at))
+        let colons = || text.match_indices(':').map(|(at, _)| at);
+        let is_named_so = |at: &usize| text[..*at].ends_with(".json");
+        colons()
+            .find(is_file)
+            .or_else(|| colons().find(is_named_so))
     };
     let (path, name) = match named {
         Some(at) => (Path::new(&text[..at]), Some(&text[at + 1..])),

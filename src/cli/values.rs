@@ -158,9 +158,19 @@ pub fn named<T: Value + Clone + Send + Sync>() -> impl TypedValueParser<Value = 
     choices(T::CHOICES).try_map(|name| T::read(&name))
 }
 
+/// The same without one of the choices.
+pub(super) fn named_but<T: Value + Clone + Send + Sync>(
+    name: &'static str,
+) -> impl TypedValueParser<Value = T> {
+    let others = T::CHOICES.iter().filter(move |(other, _)| *other != name);
+    choices(others).try_map(|name| T::read(&name))
+}
+
 /// The parser of one of these names, each with its documentation.
-pub(super) fn choices(names: &'static [(&'static str, &'static str)]) -> PossibleValuesParser {
-    let all = names.iter();
+pub(super) fn choices(
+    names: impl IntoIterator<Item = &'static (&'static str, &'static str)>,
+) -> PossibleValuesParser {
+    let all = names.into_iter();
     PossibleValuesParser::new(all.map(|(name, about)| PossibleValue::new(name).help(help(about).0)))
 }
 

@@ -53,7 +53,8 @@ pub fn direction(text: &str) -> Result<DVec3, String> {
         "z" => return Ok(sign * DVec3::Z),
         _ => {}
     }
-    let vector = numbers_of(text).map_err(|error| error.to_string())?;
+    let vector = numbers_of(text)
+        .map_err(|error| format!("{error}; give three numbers, or an axis such as y or -z"))?;
     match DVec3::from_array(vector) {
         DVec3::ZERO => Err("a direction cannot be zero".into()),
         vector => Ok(vector),

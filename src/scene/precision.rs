@@ -49,7 +49,7 @@ named! {
         /// 8 bits per coefficient, with one scale per Gaussian. The constant term has 16-bit floats. Degree 3 takes 56 bytes.
         Byte = "8",
         /// 11, 11 and 10 bits for the red, green and blue of each coefficient, with one scale per degree, a power of two. The error
-        /// is at most 1/1023 of the largest coefficient of the degree (1/511 for blue), unless that exceeds 65536. The constant term
+        /// is at most 1/1023 of the largest coefficient of the degree (1/511 for blue), if that is at most 65536. The constant term
         /// has 16-bit floats. Degree 3 takes 68 bytes.
         Packed = "packed",
         /// 16-bit floats. Degree 3 takes 96 bytes.
@@ -98,7 +98,7 @@ settings! {
         pub key_bits: u32 as "key-bits"(Precision, "N", |n| (8..=32).contains(n), "a number from 8 to 32"),
         /// Mode exact: the ratio sigma/depth above which a splat's weight is exact in perspective.
         ///
-        /// sigma is the largest standard deviation of the splat. If the ratio is smaller, the weight is computed as if the rays of
+        /// sigma is the largest standard deviation of the splat, and depth how far its centre is in front of the camera. If the ratio is smaller, the weight is computed as if the rays of
         /// all pixels were parallel. 0 makes all cut splats exact in perspective.
         pub beam_switch: f32 as "beam-switch"(
             Precision, "X", |x| *x >= 0.0 && x.is_finite(), "a finite number, zero or above"

@@ -43,7 +43,7 @@ named! {
         /// Nothing of the splat stays, as in the code that was released with the paper.
         Drop = "drop",
         /// The whole splat stays if the clip keeps the point of the ray at which the splat is densest; otherwise nothing of it stays.
-        /// At the edge of the ellipsoid, the visible share has the same limit.
+        /// Towards the edge of the ellipsoid, the share of the rays that meet it becomes the same.
         #[default]
         Peak = "peak",
     }

@@ -233,7 +233,7 @@ fn what_cannot_be_baked_is_refused_and_nothing_is_written() {
         (
             "bake @/scene.ply -o @/a.ply --clip plane:1,0,0,0 --mode none",
             2,
-            "cuts nothing",
+            "[possible values: hard, rara, exact]",
         ),
         (
             "bake @/scene.ply -o @/a.ply --clip plane:1,0,0,0 --children 4",

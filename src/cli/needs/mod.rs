@@ -1,5 +1,5 @@
-//! Which flags have an effect only together with others. Clap's own `requires` waives what conflicts with something that is given,
-//! and would then leave a flag without any.
+//! Some flags have no effect without others. Clap's own `requires` waives what conflicts with something that is given, and
+//! would then leave a flag without any.
 
 #[cfg(all(test, feature = "view"))]
 mod tests;

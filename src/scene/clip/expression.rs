@@ -72,7 +72,8 @@ impl Expression {
     /// Reads the text of one shape, prism or mesh, perhaps with a `!` before it, as [`ShapeTree::read`] reads expressions.
     #[cfg(all(feature = "formats", feature = "json"))] // for layers' regions
     pub(crate) fn read_leaf(text: &str, bounds: Option<Bounds>) -> Result<(Self, bool)> {
-        let bare = text.trim().trim_start_matches('!').trim_start();
+        let text = text.trim();
+        let bare = text.strip_prefix('!').unwrap_or(text).trim_start();
         let name = bare.split_once(':').map(|(name, _)| name.trim());
         let is_other = |name: &str| OTHERS.iter().any(|(other, _)| *other == name);
         match name {

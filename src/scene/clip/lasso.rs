@@ -65,7 +65,7 @@ impl Lasso {
             self.rings.iter().map(ring).collect::<Vec<Vec<DVec2>>>()
         };
         if camera.projection == Projection::Perspective {
-            // Of a mirrored picture the corners are mirrored instead.
+            // If the picture is mirrored, its corners are mirrored instead.
             let sign = right.cross(down).dot(forward).signum();
             let rings = mapped(&|corner| DVec2::new(sign * corner.x, corner.y));
             let base = PrismBase::Eye {

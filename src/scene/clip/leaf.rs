@@ -1,4 +1,4 @@
-//! What shapes, prisms and meshes have in common, whichever of these an expression is.
+//! Questions that shapes, prisms and meshes all answer, whichever of these an expression is.
 
 use glam::DVec3;
 

@@ -118,7 +118,8 @@ fn across(along: DVec3) -> [DVec3; 2] {
 impl Prism {
     /// How it is written as text, and what that means: its text in [`Expression::usages`](super::Expression::usages).
     pub(super) const USAGE: &str = "polygon:AXIS;u,v;u,v;... has these corners, and goes on without end along AXIS, which is x, y, z or a direction X,Y,Z. \
-         The corners are (x, y) for z, (x, z) for y and (y, z) for x. A | begins the corners of a hole. polygon:z=0..2;... ends at \
+         The corners are (x, y) along z, (x, z) along y and (y, z) along x. Along another direction they are those of the \
+         nearest axis, turned with it. A | begins the corners of a hole. polygon:z=0..2;... ends at \
          these two heights along the axis. polygon:FILE and polygon:AXIS;FILE take the corners from a .geojson file.";
 
     /// Makes the prism of a polygon and its holes. A ring may repeat its first corner at its end.

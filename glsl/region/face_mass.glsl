@@ -5,81 +5,135 @@
 //
 // In the space where the distribution has deviations of 1 and mean 0, a face at the distance p has an integral that goes around its
 // edges: that of 1 - p/r - 2 p (e(p) - e(r)) over the angle about the foot of the mean on its plane, where r is the distance of the
-// edge, and e(r) = (Phi(r) - 1/2)/r is smooth. The first two terms give the solid angle, which is known (Van Oosterom and Strackee 1983);
-// the rest changes so little that four points on an edge suffice to 1e-4. Twin: src/reference/region/face_mass.rs.
+// edge, and e(r) = (Phi(r) - 1/2)/r is smooth. The first two terms give the solid angle, which is known; the rest changes so little that
+// four points on an edge suffice to 1e-4. Since whole turns do not count, solid angles are multiplied as complex numbers, not added; an
+// edge's part comes from how it lies in the face's plane, which needles leave its digits. Twin: src/reference/region/face_mass.rs.
 #ifndef RARA_REGION_FACE_MASS
 #define RARA_REGION_FACE_MASS
 #include "region/faces.glsl"
-#include "phi.glsl"
 
 // Beyond so many deviations nothing counts.
 const float MASS_REACH = 4.5;
+// A sum may be off by so much.
+const float MASS_DOUBT = 0.02;
 // An edge's points are chosen as if it were seen from this far, by half the tangent of half the angle.
 const float EDGE_REACH = 2.0;
-// Gauss and Legendre's two points, for short edges, and four with their weights; the others are the same on the other side.
-const float EDGE_SHORT = 1.5;
-const float EDGE_POINT = 0.5773503;
-const vec2 EDGE_POINTS = vec2(0.3399810, 0.8611363);
-const vec2 EDGE_WEIGHTS = vec2(0.6521452, 0.3478548);
+// Gauss and Legendre's four points, and their weights.
+const vec4 EDGE_POINTS = vec4(-0.8611363, -0.3399810, 0.3399810, 0.8611363);
+const vec4 EDGE_WEIGHTS = vec4(0.3478548, 0.6521452, 0.6521452, 0.3478548);
 
-float excess(float square) {
-    float r = sqrt(square);
-    return square < 1e-4 ? 0.3989423 * (1.0 - square / 6.0) : (phi(r) - 0.5) / r;
+// e(r) of squares of r, to 7e-6: its inverse square is 4 r r and a polynomial that falls to nothing.
+vec4 excess(vec4 square) {
+    vec4 u = min(0.0625 * square, vec4(1.0));
+    vec4 low = ((29.669094 * u - 113.81287) * u + 166.47692) * u - 98.476655;
+    vec4 rest = (((low * u - 13.395231) * u + 53.764092) * u - 30.498537) * u + 6.2832458;
+    return inversesqrt(4.0 * square + rest);
 }
 
-// The integral over an edge of what a face's solid angle is too large by. `a` and `b` are its ends from the foot.
-float edge_mass(vec3 a, vec3 b, vec3 normal, float p) {
-    vec3 along = b - a;
-    float size = length(along);
-    if (!(size > 0.0)) {
-        return 0.0;
-    }
-    along /= size;
-    float start = dot(a, along);
-    float aside = dot(cross(a, along), normal);
-    float reach = sqrt(aside * aside + EDGE_REACH * EDGE_REACH);
-    vec2 ends = vec2(start, start + size);
-    ends /= reach + sqrt(reach * reach + ends * ends);
-    float middle = 0.5 * (ends.x + ends.y);
+// A turn by one angle and another, each of length 1.
+vec2 turned(vec2 one, vec2 other) {
+    return vec2(one.x * other.x - one.y * other.y, one.x * other.y + one.y * other.x);
+}
+
+vec2 of_length_one(vec2 turn) {
+    return turn * inversesqrt(max(dot(turn, turn), 1e-30));
+}
+
+// A corner of a face as seen from the foot: where it is, and how far it is from the foot and from the mean.
+struct FaceCorner {
+    vec3 at;
+    float from_foot, from_mean;
+};
+
+// A face as seen from the mean, and what it hides.
+struct FaceSight {
+    vec3 normal;
+    float p;
+    float nearest; // e(p)
+    bool is_over; // the foot is on the face
+    vec2 turn; // half the solid angle
+    float rest; // by how much that is too large
+};
+
+void add_hidden_edge(inout FaceSight face, FaceCorner a, FaceCorner b) {
+    vec3 along = b.at - a.at;
+    along /= max(length(along), 1e-30);
+    float start = dot(a.at, along);
+    float end = dot(b.at, along);
+    float aside = dot(cross(a.at, along), face.normal);
+    face.is_over = face.is_over && aside > 0.0;
+    float square_p = face.p * face.p;
+    float square_aside = aside * aside;
+    // The integral of p/r is the difference of two arctangents of p t / (aside r).
+    float size = max((square_p + square_aside) * a.from_foot * b.from_foot, 1e-30);
+    float cosine = (square_aside * a.from_mean * b.from_mean + square_p * start * end) / size;
+    float sine = face.p * aside * (end * a.from_mean - start * b.from_mean) / size;
+    vec2 half_turn = cosine > 0.0 ? vec2(1.0 + cosine, sine) : vec2(abs(sine), sine < 0.0 ? cosine - 1.0 : 1.0 - cosine);
+    face.turn = turned(face.turn, of_length_one(vec2(half_turn.x, -half_turn.y)));
+    float square_reach = square_aside + EDGE_REACH * EDGE_REACH;
+    float reach = sqrt(square_reach);
+    vec2 ends = vec2(start, end);
+    ends /= reach + sqrt(square_reach + ends * ends);
     float half_size = 0.5 * (ends.y - ends.x);
-    float nearest = excess(p * p);
-    bool is_short = size < EDGE_SHORT;
-    float sum = 0.0;
-    for (uint i = 0u; i < (is_short ? 2u : 4u); i++) {
-        float point = is_short ? EDGE_POINT : EDGE_POINTS[i >> 1];
-        float weight = is_short ? 1.0 : EDGE_WEIGHTS[i >> 1];
-        float at = middle + ((i & 1u) == 0u ? half_size : -half_size) * point;
-        float rest = 1.0 / (1.0 - at * at);
-        float along_edge = 2.0 * reach * at * rest;
-        float square = aside * aside + along_edge * along_edge;
-        sum += weight * (1.0 + at * at) * rest * rest * (nearest - excess(p * p + square)) / max(square, 1e-12);
-    }
-    return 4.0 * p * aside * reach * half_size * sum;
+    vec4 at = 0.5 * (ends.x + ends.y) + half_size * EDGE_POINTS;
+    vec4 scale = 1.0 / (1.0 - at * at);
+    vec4 place = 2.0 * reach * at * scale;
+    vec4 square = square_aside + place * place;
+    vec4 change = (face.nearest - excess(square_p + square)) / max(square, vec4(1e-12));
+    face.rest += 4.0 * face.p * aside * reach * half_size * dot((1.0 + at * at) * scale * scale * change, EDGE_WEIGHTS);
 }
 
-// The share of the distribution that a face hides; negative where its front is seen from the mean.
-float face_mass(Face face) {
-    vec3 low = min(min(face.a, face.b), face.c);
-    vec3 high = max(max(face.a, face.b), face.c);
-    if (any(greaterThan(low, vec3(MASS_REACH))) || any(lessThan(high, vec3(-MASS_REACH)))) {
-        return 0.0;
-    }
+// What faces hide together.
+struct HiddenSum {
+    vec2 turn; // half of their solid angles, less whole turns
+    float turns;
+    float rest;
+    float crossings; // how much more often the mesh winds around the mean than around the place where that is known
+};
+
+// Adds a face. `known` is where it is known how often the mesh winds around it.
+void add_face(inout HiddenSum sum, Face face, vec3 known) {
     vec3 normal = cross(face.b - face.a, face.c - face.a);
     float size = length(normal);
-    normal /= max(size, 1e-30);
-    float p = dot(normal, face.a);
-    if (!(size > 0.0) || abs(p) > MASS_REACH) {
-        return 0.0;
+    if (!(size > 0.0)) {
+        return;
     }
-    vec3 sizes = vec3(length(face.a), length(face.b), length(face.c));
-    float below = sizes.x * sizes.y * sizes.z + dot(face.a, face.b) * sizes.z + dot(face.b, face.c) * sizes.x + dot(face.c, face.a) * sizes.y;
-    float angle = 2.0 * atan(p * size, below);
+    normal /= size;
+    float p = dot(normal, face.a);
+    // Two faces see the edge between them alike, so that no line slips through it.
+    precise vec3 ab = cross(face.a, face.b);
+    precise vec3 bc = cross(face.b, face.c);
+    precise vec3 ca = cross(face.c, face.a);
+    precise vec3 sides = vec3(dot(known, ab), dot(known, bc), dot(known, ca));
+    bool is_in_cone = all(greaterThan(sides, vec3(0.0))) || all(lessThan(sides, vec3(0.0)));
+    bool is_known_outside = dot(normal, known) > p;
+    sum.crossings += is_in_cone && is_known_outside != p < 0.0 ? is_known_outside ? 1.0 : -1.0 : 0.0;
+    vec3 low = min(min(face.a, face.b), face.c);
+    vec3 high = max(max(face.a, face.b), face.c);
+    if (any(greaterThan(low, vec3(MASS_REACH))) || any(lessThan(high, vec3(-MASS_REACH))) || abs(p) > MASS_REACH) {
+        return;
+    }
     vec3 foot = p * normal;
-    face.a -= foot;
-    face.b -= foot;
-    face.c -= foot;
-    float rest = edge_mass(face.a, face.b, normal, p) + edge_mass(face.b, face.c, normal, p) + edge_mass(face.c, face.a, normal, p);
-    return (angle - rest) * 0.07957747; // 1/(4 pi)
+    face = Face(face.a - foot, face.b - foot, face.c - foot);
+    vec3 squares = vec3(dot(face.a, face.a), dot(face.b, face.b), dot(face.c, face.c));
+    vec3 from_foot = sqrt(squares);
+    vec3 from_mean = sqrt(squares + p * p);
+    FaceCorner a = FaceCorner(face.a, from_foot.x, from_mean.x);
+    FaceCorner b = FaceCorner(face.b, from_foot.y, from_mean.y);
+    FaceCorner c = FaceCorner(face.c, from_foot.z, from_mean.z);
+    FaceSight sight = FaceSight(normal, p, excess(vec4(p * p)).x, true, vec2(1.0, 0.0), 0.0);
+    add_hidden_edge(sight, a, b);
+    add_hidden_edge(sight, b, c);
+    add_hidden_edge(sight, c, a);
+    vec2 turn = sight.is_over ? -sight.turn : sight.turn;
+    // Each is less than half a turn: a sum that goes past half a turn gets the other sign.
+    vec2 next = turned(sum.turn, turn);
+    bool is_left = sum.turn.y >= 0.0;
+    if (is_left != next.y >= 0.0 && is_left == turn.y >= 0.0) {
+        sum.turns += is_left ? 1.0 : -1.0;
+    }
+    sum.turn = of_length_one(next);
+    sum.rest += sight.rest;
 }
 
 // A space in which a normal distribution has deviations of 1 and mean 0: the map there from that of the faces.
@@ -103,24 +157,11 @@ Face in_space(EvenSpace space, Face face) {
     return Face(space.map * face.a - space.mean, space.map * face.b - space.mean, space.map * face.c - space.mean);
 }
 
-// Shares that are nearer to nothing or everything are told apart by points: a sum may be off by so much, and by so much for each face.
-const float MASS_DOUBT = 2e-3;
-const float MASS_DOUBT_FACE = 1e-4;
-
-// True where a mesh keeps most of what is about a point, of which it keeps nearly all or hardly anything: two of three points say so. The
-// point itself may lie in a needle or a gap.
-bool faces_keep_most(uint base, Faces faces, vec3 mean, mat3 deviations) {
-    bool first = faces_keep(base, faces, mean + deviations * vec3(0.61, 0.23, -0.44));
-    bool second = faces_keep(base, faces, mean + deviations * vec3(-0.52, 0.47, 0.31));
-    return first == second ? first : faces_keep(base, faces, mean + deviations * vec3(0.08, -0.71, 0.19));
-}
-
 // The share that a mesh keeps of a normal distribution about a point of the unit space, where its faces do not cut each other.
 float faces_share(uint base, Faces faces, vec3 mean, mat3 deviations) {
     EvenSpace space = even_space(faces, mean, deviations);
     mat3 sizes = mat3(abs(space.map[0]), abs(space.map[1]), abs(space.map[2]));
-    float sum = 0.0;
-    float doubt = MASS_DOUBT;
+    HiddenSum sum = HiddenSum(vec2(1.0, 0.0), 0.0, 0.0, 0.0);
     for (FaceWalk walk = face_walk(faces);;) {
         while (is_at_node(walk)) {
             WalkedNode node = walked_node(faces, walk.node);
@@ -132,14 +173,19 @@ float faces_share(uint base, Faces faces, vec3 mean, mat3 deviations) {
         if (!takes_face(base, faces, walk, face)) {
             break;
         }
-        float mass = face_mass(in_space(space, face));
-        sum += mass;
-        doubt += mass == 0.0 ? 0.0 : MASS_DOUBT_FACE;
+        // The centre, of which a record knows how often the mesh winds around it, is at 0.
+        add_face(sum, in_space(space, face), -space.mean);
     }
-    float share = fract(-sum);
-    if (min(share, 1.0 - share) < doubt) {
-        bool is_held = faces_keep_most(base, faces, mean, deviations) != faces.keeps_outside;
-        share = is_held == share > 0.5 ? share : is_held ? 1.0 : 0.0;
+    float hidden = atan(sum.turn.y, sum.turn.x) * 0.15915494 + sum.turns - 0.07957747 * sum.rest; // 1/(2 pi), 1/(4 pi)
+    float share = fract(-hidden);
+    // Where hardly anything is kept or dropped, rounding does not say which; how often the mesh winds around the mean does, but on a face.
+    if (min(share, 1.0 - share) < MASS_DOUBT) {
+        float winding = faces.winding + sum.crossings;
+        if (faces.is_walked) {
+            winding = faces_keep(base, faces, mean + deviations * NUDGE) != faces.keeps_outside ? 1.0 : 0.0;
+        }
+        float known = winding - hidden;
+        share = known > -MASS_DOUBT && known < 1.0 + MASS_DOUBT ? clamp(known, 0.0, 1.0) : share;
     }
     return faces.keeps_outside ? 1.0 - share : share;
 }

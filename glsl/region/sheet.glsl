@@ -6,7 +6,7 @@
 #include "region/mesh.glsl"
 
 // Many small faces that are one sheet near a Gaussian are the quadric that fits them, if no pixel's alpha changes by more than this times
-// 100. The sheet is sampled along its nearest face's normal in rows and columns so many deviations apart, and at the corners of so
+// 100. The sheet is sampled along its nearest face's normal in rows and columns so many deviations apart, and along the edges of so
 // many faces.
 const float SHEET_ERROR = 5e-3;
 const float SHEET_STEP = 1.2;
@@ -120,8 +120,13 @@ bool fitted_sheet(Faces faces, MeshTree tree, MeshBall ball, float deviations, v
     uint face;
     for (uint seen = 0u; seen < SHEET_FACES && next_face(tree, ball, deviations, search, face); seen++) {
         Face unit = unit_face(ball, mesh_face(tree, face));
-        for (uint corner = 0u; corner < 3u; corner++) {
-            vec3 u = corner == 0u ? unit.a : corner == 1u ? unit.b : unit.c;
+        // Where its edges come nearest, and as far from there as the rows are apart.
+        for (uint i = 0u; i < 9u; i++) {
+            vec3 from = i < 3u ? unit.a : i < 6u ? unit.b : unit.c;
+            vec3 along = (i < 3u ? unit.b : i < 6u ? unit.c : unit.a) - from;
+            float square = max(dot(along, along), 1e-30);
+            float place = -dot(from, along) / square + (float(i % 3u) - 1.0) * SHEET_STEP * inversesqrt(square);
+            vec3 u = from + clamp(place, 0.0, 1.0) * along;
             float off = dot(u, sheet.normal) - sheet_height(sheet, vec2(dot(u, sheet.right), dot(u, sheet.up)));
             if (!sheet_fits(off, dot(u, u))) {
                 return false;

@@ -33,6 +33,9 @@ pub fn regimes() -> Vec<Regime> {
         limited("a sheet thinner than a splat", || {
             cases(73, SMALL, shapes::sheet(20, 0.01))
         }),
+        limited("needles that meet in a vertex", || {
+            cases(74, SMALL, shapes::needle_fan(40))
+        }),
         limited("shells in each other", || {
             cases(75, SMALL, shapes::nested(3, 2))
         }),

@@ -155,7 +155,11 @@ Record weight_taken_over(uint i, inout Seen splat) {
         }
         record.sides = all_cutting();
         if (SEVERAL && COMBINED) {
-            record.sides = RecordSides(OF(i, mine_record.sides.cutting), OF(i, mine_record.sides.visible));
+            record.sides = RecordSides(OF(i, mine_record.sides.cutting), OF(i, mine_record.sides.visible), no_tile_faces());
+        }
+        if (MESHES) {
+            TileFaces faces = mine_record.sides.faces;
+            record.sides.faces = TileFaces(OF(i, faces.bits), OF(i, faces.first), OF(i, faces.known), OF(i, faces.winding));
         }
         record.surfaces.answers = COMBINED && CLIP_MODE == MODE_EXACT ? OF(i, mine_record.surfaces.answers) : 0u;
         if (record.surfaces.answers != 0u) {

@@ -21,10 +21,11 @@
 struct RecordSides {
     uint cutting;
     uint visible; // of those that do not cut
+    TileFaces faces; // those of a mesh that cuts the splat alone
 };
 
 RecordSides all_cutting() {
-    return RecordSides(~0u, 0u);
+    return RecordSides(~0u, 0u, no_tile_faces());
 }
 
 // Surfaces whose sides are known, one a bit. Any beyond count as cutting.
@@ -42,6 +43,8 @@ struct TileSurfaces {
 };
 // The combinations in which one of two surfaces is on its kept side: where the region keeps these, the other does not matter.
 const uint FIRST_KEEPS = 0xau;
+const uint BOTH_KEEP = 8u;
+const uint EITHER_KEEPS = 14u;
 const uint SECOND_KEEPS = 0xcu;
 
 // Gauss and Hermite's nodes and weights for a normal variable: the middle one and three on either side.
@@ -314,7 +317,8 @@ float combined_weight(Sight s, uint base, uint flags, RecordSides sides, float s
         }
     }
     // Most pixels do not come here. All lines of the direction begin on the half-space in front of the eye, where that counts.
-    mat3 deviations = deviations_of(line);
+    mat3 back;
+    mat3 deviations = deviations_of(line, back);
     float width = 1.0;
     if (MESHES && (flags & CUT_FACES) == CUT_FACES && !is_chord) {
         vec3 squares = vec3(dot(deviations[0], deviations[0]), dot(deviations[1], deviations[1]), dot(deviations[2], deviations[2]));
@@ -322,7 +326,7 @@ float combined_weight(Sight s, uint base, uint flags, RecordSides sides, float s
         if (measure == MEASURE_MASS && width > WIDTH_ONE && is_group(base, 0u)) {
             Faces faces = faces_of(base, 0u);
             if (faces.count + 1u == count && !faces.overlaps) {
-                return faces_share(base, faces, line.mean, deviations);
+                return faces_share(base, faces, sides.faces, line.mean, deviations, back);
             }
         }
     }

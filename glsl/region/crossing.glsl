@@ -152,7 +152,7 @@ vec3 perpendicular(vec3 v) {
 }
 
 // The deviations along a line and in two directions across it, none of which depends on another.
-mat3 deviations_of(Line line) {
+mat3 deviations_of(Line line, out mat3 back) {
     mat3 deviations;
     deviations[0] = direction_of(line);
     vec3 p = dot(line.s.b1, line.s.b1) < dot(line.s.b2, line.s.b2) ? line.s.b2 : line.s.b1;
@@ -161,7 +161,15 @@ mat3 deviations_of(Line line) {
     float variance = across(line, p, deviations[1]);
     q -= p * (dot(q, deviations[1]) * inversesqrt(variance));
     across(line, q, deviations[2]);
+    // Thin Gaussians leave the general inverse no digits.
+    vec3 r = cross(deviations[1], deviations[2]);
+    back = transpose(mat3(r / dot(r, deviations[0]), p / dot(p, deviations[1]), q / dot(q, deviations[2])));
     return deviations;
+}
+
+mat3 deviations_of(Line line) {
+    mat3 back;
+    return deviations_of(line, back);
 }
 
 #endif

@@ -139,30 +139,30 @@ void add_face(inout HiddenSum sum, Face face, vec3 known) {
 // A space in which a normal distribution has deviations of 1 and mean 0: the map there from that of the faces.
 struct EvenSpace {
     mat3 map;
+    mat3 from_unit;
     vec3 mean;
 };
 
 // A vertex has no solid angle as seen from itself: the mean is this much aside of where it could be one.
 const vec3 NUDGE = vec3(1.1e-5, -2.3e-5, 1.7e-5);
 
-EvenSpace even_space(Faces faces, vec3 mean, mat3 deviations) {
-    // The columns of the faces' map are at right angles.
-    vec3 squares = vec3(dot(faces.map[0], faces.map[0]), dot(faces.map[1], faces.map[1]), dot(faces.map[2], faces.map[2]));
-    mat3 to_unit = transpose(mat3(faces.map[0] / squares.x, faces.map[1] / squares.y, faces.map[2] / squares.z));
-    mat3 from_unit = inverse(deviations);
-    return EvenSpace(from_unit * to_unit, from_unit * mean + NUDGE);
+EvenSpace even_space(Faces faces, vec3 mean, mat3 from_unit) {
+    return EvenSpace(from_unit * to_unit(faces), from_unit, from_unit * mean + NUDGE);
 }
 
 Face in_space(EvenSpace space, Face face) {
     return Face(space.map * face.a - space.mean, space.map * face.b - space.mean, space.map * face.c - space.mean);
 }
 
-// The share that a mesh keeps of a normal distribution about a point of the unit space, where its faces do not cut each other.
-float faces_share(uint base, Faces faces, vec3 mean, mat3 deviations) {
-    EvenSpace space = even_space(faces, mean, deviations);
+// The share that a mesh keeps of a normal distribution about a point of the unit space, where its faces do not cut each other. `back` is
+// the inverse of its deviations.
+float faces_share(uint base, Faces faces, TileFaces list, vec3 mean, mat3 deviations, mat3 back) {
+    EvenSpace space = even_space(faces, mean, back);
     mat3 sizes = mat3(abs(space.map[0]), abs(space.map[1]), abs(space.map[2]));
+    // A record knows how often the mesh winds around the centre.
+    vec3 known = space.from_unit * list.known - space.mean;
     HiddenSum sum = HiddenSum(vec2(1.0, 0.0), 0.0, 0.0, 0.0);
-    for (FaceWalk walk = face_walk(faces);;) {
+    for (FaceWalk walk = face_walk(faces, list);;) {
         while (is_at_node(walk)) {
             WalkedNode node = walked_node(faces, walk.node);
             vec3 from = abs(space.map * (0.5 * (node.low + node.high)) - space.mean);
@@ -173,19 +173,18 @@ float faces_share(uint base, Faces faces, vec3 mean, mat3 deviations) {
         if (!takes_face(base, faces, walk, face)) {
             break;
         }
-        // The centre, of which a record knows how often the mesh winds around it, is at 0.
-        add_face(sum, in_space(space, face), -space.mean);
+        add_face(sum, in_space(space, face), known);
     }
     float hidden = atan(sum.turn.y, sum.turn.x) * 0.15915494 + sum.turns - 0.07957747 * sum.rest; // 1/(2 pi), 1/(4 pi)
     float share = fract(-hidden);
     // Where hardly anything is kept or dropped, rounding does not say which; how often the mesh winds around the mean does, but on a face.
     if (min(share, 1.0 - share) < MASS_DOUBT) {
-        float winding = faces.winding + sum.crossings;
-        if (faces.is_walked) {
+        float winding = (is_list(list) ? list.winding : faces.winding) + sum.crossings;
+        if (faces.is_walked && !is_list(list)) {
             winding = faces_keep(base, faces, mean + deviations * NUDGE) != faces.keeps_outside ? 1.0 : 0.0;
         }
-        float known = winding - hidden;
-        share = known > -MASS_DOUBT && known < 1.0 + MASS_DOUBT ? clamp(known, 0.0, 1.0) : share;
+        float whole = winding - hidden;
+        share = whole > -MASS_DOUBT && whole < 1.0 + MASS_DOUBT ? clamp(whole, 0.0, 1.0) : share;
     }
     return faces.keeps_outside ? 1.0 - share : share;
 }

@@ -87,6 +87,13 @@ UnitSurface seen_surface(uint base, uint entry, inout mat3 map) {
     return kind == 0.0 || kind == ENTRY_PLANE ? entry_of(base, entry) : UnitSurface(vec4(0.0), vec3(0.0), vec3(0.0));
 }
 
+// The map from the faces' space to the unit space.
+mat3 to_unit(Faces faces) {
+    // The columns of the other way's map are at right angles.
+    vec3 squares = vec3(dot(faces.map[0], faces.map[0]), dot(faces.map[1], faces.map[1]), dot(faces.map[2], faces.map[2]));
+    return transpose(mat3(faces.map[0] / squares.x, faces.map[1] / squares.y, faces.map[2] / squares.z));
+}
+
 // A node of the hierarchy, its box about the centre. Where it is entered, its faces come next and then the node behind it, else `skip`.
 struct WalkedNode {
     vec3 low, high;
@@ -101,20 +108,79 @@ WalkedNode walked_node(Faces faces, uint at) {
     return WalkedNode(low.xyz - faces.centre, high.xyz - faces.centre, floatBitsToUint(low.w), leaf >> 3, leaf & 7u);
 }
 
-// A walk over a group: over its faces, or over those of the nodes that are entered.
+// The faces of a group that come into a tile: a bit each in two runs of 64 faces, the first face of each in `first`; or no list.
+struct TileFaces {
+    uvec4 bits;
+    uvec2 first;
+    vec3 known; // where it is known how often the mesh winds around it, in the unit space
+    float winding;
+};
+
+TileFaces no_tile_faces() {
+    return TileFaces(uvec4(0u), uvec2(~0u), vec3(0.0), 0.0);
+}
+
+// A list that has no room for a face is none: its first run is behind all faces.
+const uint NO_LIST = ~0u - 1u;
+
+bool is_list(TileFaces list) {
+    return list.first.x < NO_LIST;
+}
+
+void add_tile_face(inout TileFaces list, uint face) {
+    list.first.x = list.first.x == ~0u ? face : list.first.x;
+    uint place = face - list.first.x;
+    if (place >= 64u) {
+        list.first.y = list.first.y == ~0u ? face : list.first.y;
+        place = face - list.first.y;
+        if (place >= 64u) {
+            list.first.x = NO_LIST;
+        } else if (place >= 32u) {
+            list.bits.w |= 1u << (place - 32u);
+        } else {
+            list.bits.z |= 1u << place;
+        }
+    } else if (place >= 32u) {
+        list.bits.y |= 1u << (place - 32u);
+    } else {
+        list.bits.x |= 1u << place;
+    }
+}
+
+// Takes the first face off a list that is not empty.
+uint first_of(inout TileFaces list) {
+    if ((list.bits.x | list.bits.y) != 0u) {
+        bool is_low = list.bits.x != 0u;
+        uint word = is_low ? list.bits.x : list.bits.y;
+        list.bits.xy = is_low ? uvec2(word & word - 1u, list.bits.y) : uvec2(0u, word & word - 1u);
+        return list.first.x + uint(findLSB(word)) + (is_low ? 0u : 32u);
+    }
+    bool is_low = list.bits.z != 0u;
+    uint word = is_low ? list.bits.z : list.bits.w;
+    list.bits.zw = is_low ? uvec2(word & word - 1u, list.bits.w) : uvec2(0u, word & word - 1u);
+    return list.first.y + uint(findLSB(word)) + (is_low ? 0u : 32u);
+}
+
+// A walk over a group: over its faces, over those of a list, or over those of the nodes that are entered.
 struct FaceWalk {
     uint nodes;
     uint corners; // where those of the hierarchy begin
     uint node;
     uint face, left; // faces
+    TileFaces list;
 };
 
-FaceWalk face_walk(Faces faces) {
-    if (!faces.is_walked) {
-        return FaceWalk(0u, 0u, 0u, faces.first, faces.count);
+FaceWalk face_walk(Faces faces, TileFaces list) {
+    uvec4 head = faces.is_walked ? floatBitsToUint(cut_records.at[faces.root]) : uvec4(0u);
+    if (is_list(list)) {
+        uvec4 counts = uvec4(bitCount(list.bits));
+        return FaceWalk(0u, faces.root + head.z, 0u, 0u, counts.x + counts.y + counts.z + counts.w, list);
     }
-    uvec4 head = floatBitsToUint(cut_records.at[faces.root]);
-    return FaceWalk(head.x, faces.root + head.z, 0u, 0u, 0u);
+    return FaceWalk(head.x, faces.root + head.z, 0u, faces.first, faces.is_walked ? 0u : faces.count, list);
+}
+
+FaceWalk face_walk(Faces faces) {
+    return face_walk(faces, no_tile_faces());
 }
 
 // True where the walk is at a node, which `enter` leaves.
@@ -133,15 +199,22 @@ bool takes_face(uint base, Faces faces, inout FaceWalk walk, out Face face) {
     if (walk.left == 0u) {
         return false;
     }
+    if (is_list(walk.list)) {
+        walk.face = first_of(walk.list);
+    }
     if (faces.is_walked) {
         // Nine words without gaps, which begin at any place of a quad.
-        float words[9];
         uint first = 9u * walk.face;
-        for (uint k = 0u; k < 9u; k++) {
-            words[k] = cut_records.at[walk.corners + (first + k >> 2)][first + k & 3u];
-        }
-        face = Face(vec3(words[0], words[1], words[2]) - faces.centre, vec3(words[3], words[4], words[5]) - faces.centre,
-            vec3(words[6], words[7], words[8]) - faces.centre);
+        uint aside = first & 3u;
+        vec4 x = cut_records.at[walk.corners + (first >> 2)];
+        vec4 y = cut_records.at[walk.corners + (first >> 2) + 1u];
+        vec4 z = cut_records.at[walk.corners + (first >> 2) + 2u];
+        vec4 a = aside >= 2u ? vec4(x.zw, y.xy) : x;
+        vec4 b = aside >= 2u ? vec4(y.zw, z.xy) : y;
+        vec2 c = aside >= 2u ? z.zw : z.xy;
+        bool is_odd = (aside & 1u) != 0u;
+        face = is_odd ? Face(a.yzw, b.xyz, vec3(b.w, c)) : Face(a.xyz, vec3(a.w, b.xy), vec3(b.zw, c.x));
+        face = Face(face.a - faces.centre, face.b - faces.centre, face.c - faces.centre);
     } else {
         face = face_of(base, walk.face);
     }

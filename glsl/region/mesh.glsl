@@ -171,9 +171,12 @@ MeshBall mesh_ball(uint surface, mat3 axes, vec3 position) {
 
 // The square of how far a segment that begins at `from` is from the origin.
 float edge_square(vec3 from, vec3 along) {
-    float share = clamp(-dot(from, along) / max(dot(along, along), 1e-30), 0.0, 1.0);
-    vec3 nearest = from + share * along;
-    return dot(nearest, nearest);
+    float size = max(dot(along, along), 1e-30);
+    float share = clamp(-dot(from, along) / size, 0.0, 1.0);
+    vec3 end = share > 0.0 ? from + along : from;
+    // Of a segment that goes far, the place that is nearest has no digits; its distance has.
+    vec3 aside = cross(from, along);
+    return share > 0.0 && share < 1.0 ? dot(aside, aside) / size : dot(end, end);
 }
 
 // The square of how far a face is from the origin.

@@ -5,15 +5,16 @@
 #include "region/faces.glsl"
 #include "region/mesh.glsl"
 
-// Many small faces that are one sheet near a Gaussian are the quadric that fits them, if no pixel's alpha changes by more than this times
-// 100. The sheet is sampled along its nearest face's normal in rows and columns so many deviations apart, and along the edges of so
-// many faces.
+// Many small faces that are one sheet near a Gaussian are the quadric that fits them, if no pixel's alpha changes by more than half of
+// this, but where a line of sight goes along the sheet. The sheet is sampled along its nearest face's normal in rows and columns so many
+// deviations apart, and along the edges of so many faces. Of one that is farther than SHEET_FARTHEST, samples tell too little.
 const float SHEET_ERROR = 5e-3;
 const float SHEET_STEP = 1.2;
 const int SHEET_ROWS = 2;
 const int SHEET_ACROSS = 2 * SHEET_ROWS + 1;
 const float SHEET_RADIUS = 3.0;
 const float SHEET_DEPTH = 4.0;
+const float SHEET_FARTHEST = 2.0;
 const uint SHEET_CROSSINGS = 4u;
 const uint SHEET_FACES = 256u;
 // The terms of a quadric's height, and the equations that they solve.
@@ -43,6 +44,9 @@ bool sheet_fits(float off, float square) {
 
 // The quadric of a sheet; false where the faces near a Gaussian are no such sheet.
 bool fitted_sheet(Faces faces, MeshTree tree, MeshBall ball, float deviations, vec4 nearest, out UnitSurface surface) {
+    if (abs(nearest.w) > SHEET_FARTHEST) {
+        return false;
+    }
     Sheet sheet;
     sheet.normal = nearest.xyz;
     sheet.right = perpendicular(sheet.normal);

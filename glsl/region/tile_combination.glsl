@@ -3,6 +3,10 @@
 #ifndef RARA_REGION_TILE_COMBINATION
 #define RARA_REGION_TILE_COMBINATION
 
+// Faces are in a plane if they are no farther from it so far from the centre, deviations.
+const float TILE_FLAT = 1e-3;
+const float TILE_FLAT_REACH = 5.0;
+
 // The points of a splat that count in any of a tile's pixels: as far as `deviations` along the middle pixel's line of sight from
 // the mean given that pixel, and as far as `aside` from there in any direction.
 struct TilePoints {
@@ -57,7 +61,7 @@ uint combination_side(inout Record record, uint flags, vec2 delta, vec2 middle) 
     TileSight tile = tile_sight(record, delta, middle);
     TilePoints points = tile_points(tile, TILE_MARGIN * (CLIP_MODE == MODE_RARA ? push.params.sigma : PHI_ONE));
     uint stack = 0u;
-    record.sides = RecordSides(0u, 0u);
+    record.sides = RecordSides(0u, 0u, no_tile_faces());
     for (uint i = 0u; i < flags >> CUT_COUNT_SHIFT; i++) {
         UnitSurface surface = entry_of(record_base(record), i);
         uint side = surface_side(tile, points, surface);
@@ -89,8 +93,50 @@ uint combination_side(inout Record record, uint flags, vec2 delta, vec2 middle) 
 
 #endif
 
-// The side of a tile in a splat that a mesh cuts and nothing else does: that of the mean, if no face comes near what counts.
-uint faces_side(uint base, uint flags, TileSight tile) {
+// The box in which the points of a splat lie that count in a tile: from -1 to 1 after `map`, which takes points of the faces' space, and
+// `middle`.
+struct TileBox {
+    mat3 map;
+    vec3 middle;
+};
+
+TileBox tile_box(Faces faces, TilePoints points) {
+    float size = length(points.along);
+    vec3 x = size > 0.0 ? points.along / size : vec3(1.0, 0.0, 0.0);
+    vec3 y = perpendicular(x);
+    vec3 sizes = vec3(points.deviations * size + points.aside, points.aside, points.aside);
+    mat3 map = transpose(mat3(x / sizes.x, y / sizes.y, cross(x, y) / sizes.z));
+    return TileBox(map * to_unit(faces), map * points.mean);
+}
+
+// True where a face comes into the box: no plane of the box, of the face, or along an edge of both lies between them.
+bool comes_into(TileBox box, Face face) {
+    vec3 a = box.map * face.a - box.middle;
+    vec3 b = box.map * face.b - box.middle;
+    vec3 c = box.map * face.c - box.middle;
+    vec3 low = min(min(a, b), c);
+    vec3 high = max(max(a, b), c);
+    vec3 far = max(-low, high);
+    float slack = 1.0 + 1e-6 * max(max(far.x, far.y), far.z);
+    vec3 normal = cross(b - a, c - a);
+    // Bounds that are no numbers tell nothing.
+    bool is_apart = any(greaterThan(low, vec3(slack))) || any(lessThan(high, vec3(-slack)))
+        || abs(dot(normal, a)) > slack * dot(abs(normal), vec3(1.0));
+    for (uint i = 0u; i < 3u; i++) {
+        vec3 from = i == 0u ? a : i == 1u ? b : c;
+        vec3 along = (i == 0u ? b : i == 1u ? c : a) - from;
+        vec3 one = cross(from, along);
+        vec3 other = cross(i == 0u ? c : i == 1u ? a : b, along);
+        vec3 reach = slack * (abs(along.yzx) + abs(along.zxy));
+        is_apart = is_apart || any(greaterThan(min(one, other), reach)) || any(lessThan(max(one, other), -reach));
+    }
+    return !is_apart;
+}
+
+// The side of a tile in a splat that a mesh cuts and nothing else does: that of the mean, if no face comes near what counts. Where those
+// that do lie in one plane, or in two that meet alike, the record gets these: what bounds a face there are other faces that come near.
+uint faces_side(inout Record record, uint flags, TileSight tile) {
+    uint base = record_base(record);
     uint count = flags >> CUT_COUNT_SHIFT;
     if (!is_group(base, 0u)) {
         return SIDE_CUTOFF;
@@ -99,7 +145,8 @@ uint faces_side(uint base, uint flags, TileSight tile) {
     if (faces.count + 1u != count) {
         return SIDE_CUTOFF;
     }
-    if ((flags & CUT_FRONT) != 0u) {
+    bool has_front = (flags & CUT_FRONT) != 0u;
+    if (has_front) {
         // Where the eye is behind the mean, more than half of the splat is in front of it, and what counts is where it would be otherwise.
         ZRange front = z_range(tile, cut_records.at[base + CUT_HEADER + ENTRY_VECTORS * count]);
         if (!(front.low >= 0.0)) {
@@ -107,31 +154,78 @@ uint faces_side(uint base, uint flags, TileSight tile) {
         }
     }
     TilePoints points = tile_points(tile, TILE_MARGIN * (CLIP_MODE == MODE_RARA ? push.params.sigma : PHI_ONE));
-    vec3 middle = faces.map * points.mean;
-    vec3 along = points.deviations * (faces.map * points.along);
-    mat3 rows = transpose(faces.map);
-    vec3 reach = abs(along) + points.aside * vec3(length(rows[0]), length(rows[1]), length(rows[2]));
-    for (FaceWalk walk = face_walk(faces);;) {
-        while (is_at_node(walk)) {
-            WalkedNode node = walked_node(faces, walk.node);
-            vec3 from = abs(0.5 * (node.low + node.high) - middle);
-            enter(walk, node, all(lessThanEqual(from, reach + 0.5 * (node.high - node.low))));
-        }
-        Face here;
-        if (!takes_face(base, faces, walk, here)) {
-            break;
-        }
-        vec3 low = min(min(here.a, here.b), here.c) - middle;
-        vec3 high = max(max(here.a, here.b), here.c) - middle;
-        vec3 normal = cross(here.b - here.a, here.c - here.a);
-        float across = abs(dot(normal, along)) + points.aside * length(normal * faces.map);
-        bool is_far = any(greaterThan(low, reach)) || any(lessThan(high, -reach)) || abs(dot(normal, here.a - middle)) > 1.0001 * across;
-        // A bound that is no number settles nothing.
-        if (!is_far) {
+    // The mean that is nearest to the centre: a record knows nothing of what is far from that.
+    Sight s = tile.s;
+    s.delta = sign(s.delta) * max(abs(s.delta) - tile.delta_reach, vec2(0.0));
+    vec3 nearest = line_through(s).mean;
+    TileBox box = tile_box(faces, points);
+    mat3 sizes = mat3(abs(box.map[0]), abs(box.map[1]), abs(box.map[2]));
+    vec4 planes[2];
+    uint plane_count = 0u;
+    bool are_all_kept = true; // each face by the other plane
+    bool are_all_dropped = true;
+    for (uint turn = 0u; turn < 2u; turn++) {
+        for (FaceWalk walk = face_walk(faces);;) {
+            while (is_at_node(walk)) {
+                WalkedNode node = walked_node(faces, walk.node);
+                vec3 from = abs(box.map * (0.5 * (node.low + node.high)) - box.middle);
+                vec3 reach = 1.0001 + 1.0001 * (sizes * (0.5 * (node.high - node.low)));
+                enter(walk, node, !any(greaterThan(from, reach)));
+            }
+            Face face;
+            if (!takes_face(base, faces, walk, face)) {
+                break;
+            }
+            if (!comes_into(box, face)) {
+                continue;
+            }
+#ifdef RARA_SUBGROUP
+            // In the faces' space, where its numbers are exact, by deviations of the Gaussian.
+            vec3 normal = cross(face.b - face.a, face.c - face.a);
+            vec4 plane = vec4(normal, -dot(normal, face.a)) * (faces.keeps_outside ? 1.0 : -1.0) / max(length(normal * faces.map), 1e-30);
+            uint own = 0u;
+            while (own < min(plane_count, 2u) && !(dot(planes[own].xyz, plane.xyz) > 0.0
+                    && length((planes[own].xyz - plane.xyz) * faces.map) * TILE_FLAT_REACH + abs(planes[own].w - plane.w) < TILE_FLAT)) {
+                own++;
+            }
+            if (has_front || faces.overlaps) {
+                return SIDE_CUTOFF;
+            }
+            if (turn == 0u && faces.is_walked) {
+                add_tile_face(record.sides.faces, walk.face - 1u);
+            }
+            if (own == plane_count && plane_count < 2u) {
+                planes[plane_count] = plane;
+            }
+            plane_count = max(plane_count, own + 1u);
+            if (turn == 1u) {
+                vec4 other = planes[1u - own];
+                vec3 values = vec3(dot(other.xyz, face.a), dot(other.xyz, face.b), dot(other.xyz, face.c)) + other.w;
+                are_all_kept = are_all_kept && min(min(values.x, values.y), values.z) >= -TILE_FLAT;
+                are_all_dropped = are_all_dropped && max(max(values.x, values.y), values.z) <= TILE_FLAT;
+            }
+#else
             return SIDE_CUTOFF;
+#endif
         }
+        if (plane_count == 0u) {
+            return faces_keep(base, faces, nearest) ? SIDE_VISIBLE : SIDE_INVISIBLE;
+        }
+        turn += plane_count != 2u ? 1u : 0u;
     }
-    return faces_keep(base, faces, points.mean) ? SIDE_VISIBLE : SIDE_INVISIBLE;
+#ifdef RARA_SUBGROUP
+    if (plane_count > 2u || !(are_all_kept || are_all_dropped)) {
+        if (is_list(record.sides.faces)) {
+            record.sides.faces.known = nearest;
+            record.sides.faces.winding = faces_keep(base, faces, nearest) != faces.keeps_outside ? 1.0 : 0.0;
+        }
+    } else {
+        record.surfaces.answers = plane_count == 1u ? FIRST_KEEPS : are_all_kept ? BOTH_KEEP : EITHER_KEEPS;
+        record.surfaces.first = UnitSurface(vec4(planes[0].xyz * faces.map, planes[0].w), vec3(0.0), vec3(0.0));
+        record.surfaces.second = UnitSurface(vec4(planes[1].xyz * faces.map, planes[1].w), vec3(0.0), vec3(0.0));
+    }
+#endif
+    return SIDE_CUTOFF;
 }
 
 #endif

@@ -215,7 +215,7 @@ uint tile_side(vec3 linear, vec3 curvature, inout Record record, vec4 centre_con
     }
     bool is_combined = COMBINED && (flags & CUT_COMBINED) != 0u;
     if (MESHES && (flags & CUT_FACES) == CUT_FACES) {
-        return faces_side(record_base(record), flags, tile_sight(record, delta, middle));
+        return faces_side(record, flags, tile_sight(record, delta, middle));
     }
 #ifdef RARA_SUBGROUP
     if (is_combined) {

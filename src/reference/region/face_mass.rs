@@ -33,26 +33,38 @@ fn excess(square: f64) -> f64 {
     }
 }
 
-/// The integral over an edge of what a face's solid angle is too large by, from its ends as seen from the foot.
-fn edge_mass([a, b]: [DVec3; 2], normal: DVec3, p: f64) -> f64 {
-    let Some(along) = (b - a).try_normalize() else {
-        return 0.0;
-    };
-    let aside = a.cross(along).dot(normal);
-    let reach = aside.hypot(EDGE_REACH);
-    let [from, to] = [a, b].map(|end| (end.dot(along) / reach).atan());
-    let (middle, half) = (from.midpoint(to), 0.5 * (to - from));
-    let at = |[point, weight]: [f64; 2]| {
-        let slope = (middle + half * point).tan();
-        let square = aside * aside + reach * reach * slope * slope;
-        let change = excess(p * p) - excess(p * p + square);
-        weight * (1.0 + slope * slope) * change / square.max(1e-20)
-    };
-    let sum: f64 = POINTS
-        .iter()
-        .map(|&[point, weight]| at([point, weight]) + at([-point, weight]))
-        .sum();
-    2.0 * p * aside * reach * half * sum
+/// An edge of a face, whose ends are as seen from the foot of the mean on its plane, at the distance p.
+struct Edge {
+    /// How far its line is on the inner side of the foot.
+    aside: f64,
+    /// The integral of p/r over its angle about the foot, where r is its distance from the mean.
+    turn: f64,
+    /// The integral of what the face's solid angle is too large by.
+    rest: f64,
+}
+
+impl Edge {
+    fn new([a, b]: [DVec3; 2], normal: DVec3, p: f64) -> Option<Self> {
+        let along = (b - a).try_normalize()?;
+        let aside = a.cross(along).dot(normal);
+        let [start, end] = [a, b].map(|corner| corner.dot(along));
+        let [from, to] = [a, b].map(|corner| corner.length().hypot(p));
+        // The difference of two arctangents of p t / (aside r).
+        let turn = (p * aside * (end * from - start * to))
+            .atan2(aside * aside * from * to + p * p * start * end);
+        let reach = aside.hypot(EDGE_REACH);
+        let [from, to] = [start, end].map(|place| (place / reach).atan());
+        let (middle, half) = (from.midpoint(to), 0.5 * (to - from));
+        let at = |[point, weight]: [f64; 2]| {
+            let slope = (middle + half * point).tan();
+            let square = aside * aside + reach * reach * slope * slope;
+            let change = excess(p * p) - excess(p * p + square);
+            weight * (1.0 + slope * slope) * change / square.max(1e-20)
+        };
+        let both = |&[point, weight]: &[f64; 2]| at([point, weight]) + at([-point, weight]);
+        let rest = 2.0 * p * aside * reach * half * POINTS.iter().map(both).sum::<f64>();
+        Some(Self { aside, turn, rest })
+    }
 }
 
 /// The share of the distribution of deviations 1 and mean 0 that a face hides; negative where its front is seen from the mean.
@@ -64,12 +76,13 @@ fn face_mass([a, b, c]: [DVec3; 3]) -> f64 {
     if p.abs() > REACH {
         return 0.0;
     }
-    let volume = a.dot(b.cross(c));
-    let [x, y, z] = [a, b, c].map(DVec3::length);
-    let below = x * y * z + a.dot(b) * z + b.dot(c) * x + c.dot(a) * y;
     let [a, b, c] = [a, b, c].map(|corner| corner - p * normal);
-    let edges = [[a, b], [b, c], [c, a]].map(|ends| edge_mass(ends, normal, p));
-    (2.0 * volume.atan2(below) - edges.iter().sum::<f64>()) / (4.0 * PI)
+    let edges = [[a, b], [b, c], [c, a]].map(|ends| Edge::new(ends, normal, p));
+    let edges = || edges.iter().flatten();
+    let is_over = edges().all(|edge| edge.aside > 0.0);
+    let whole = if is_over { p.signum() * 2.0 * PI } else { 0.0 };
+    let hidden: f64 = edges().map(|edge| edge.turn + edge.rest).sum();
+    (whole - hidden) / (4.0 * PI)
 }
 
 /// The share of a normal distribution of this mean and these deviations, the columns, that lies within a mesh that does not cut itself.

@@ -1,8 +1,13 @@
 //! The renderer against the f64 reference, picture by picture, on trained and generated scenes.
 
+use glam::DQuat;
+
 use crate::common;
+use rara::clip::Inside;
 use rara::gpu::Bindings;
-use rara::{ClipOp, Gaussians, Mode, Raster, Settings};
+use rara::scene::Bounds;
+use rara::{Clip, ClipOp, Gaussians, Mesh, MeshRule, Mode, Placement, Raster, Settings};
+use rara_scene::mesh::shapes;
 
 /// Small enough for the suite, and not a multiple of any workgroup.
 const SIZE: (u32, u32) = (253, 190);
@@ -69,6 +74,30 @@ fn rara_on_trained_scenes() {
 #[test]
 fn exact_on_trained_scenes() {
     check_scenes(common::trained_scenes(), Mode::Exact, &CLIPS);
+}
+
+/// Splats as thin as paper, as long as needles and smaller than pixels, cut by faces of about their size and by tall walls.
+#[test]
+fn meshes_on_trained_scenes() {
+    let mut headless = common::headless();
+    let shapes = [shapes::torus(40, 20), shapes::prism(24, 50.0)];
+    let meshes = shapes
+        .map(|(vertices, faces)| Mesh::from_triangles(&vertices, &faces, MeshRule::Closed))
+        .map(|mesh| mesh.expect("a closed mesh"));
+    for (name, scene) in common::trained_scenes() {
+        headless.load(&scene).expect("uploads");
+        let bounds = Bounds::of(&scene);
+        for camera in common::views(&scene, 1, common::scaled((96, 72))) {
+            for mesh in &meshes {
+                let size = 0.4 * bounds.radius();
+                let there =
+                    Placement::new(bounds.centre(), DQuat::IDENTITY, size).expect("a place");
+                let clip = Clip::of([Inside::new(mesh.clone(), there)], ClipOp::And);
+                let settings = Settings::default();
+                common::check(&mut headless, &name, &scene, &camera, &clip, &settings);
+            }
+        }
+    }
 }
 
 #[test]

@@ -1,10 +1,13 @@
 //! What each shape costs and how far its cut is from the truth, beside a plane through the same point.
 
+use std::f64::consts::TAU;
+
 use crate::measure;
-use glam::{DQuat, DVec3};
-use rara::clip::Expression;
+use glam::{DQuat, DVec2, DVec3};
+use rara::clip::{Expression, Inside, MeshShape, Prism, PrismBase};
 use rara::scene::Bounds;
-use rara::{Camera, Headless, Mode, Plane, Result, Scene, Settings};
+use rara::{Camera, Headless, Mesh, MeshRule, Mode, Placement, Plane, Result, Scene, Settings};
+use rara_scene::mesh::shapes;
 use serde::Serialize;
 
 use crate::frames::picture;
@@ -72,7 +75,7 @@ pub(crate) fn lines(
 }
 
 /// The plane, and shapes about as large as the scene whose surfaces touch it in the same point and keep the same side there;
-/// then combinations of them, and a sphere around everything.
+/// then combinations of them, a sphere around everything, a prism, and meshes.
 pub(crate) fn regions(bounds: &Bounds, plane: Plane) -> Result<Vec<(&'static str, Expression)>> {
     let normal = plane.normal();
     let middle = bounds.centre() - normal * plane.distance(bounds.centre());
@@ -114,5 +117,34 @@ pub(crate) fn regions(bounds: &Bounds, plane: Plane) -> Result<Vec<(&'static str
     let parsed = regions
         .into_iter()
         .map(|(name, text)| Ok((name, text.parse()?)));
-    parsed.collect()
+    let mut all = parsed.collect::<Result<Vec<_>>>()?;
+    // The same sphere as meshes, a box as one, and a prism that is as wide.
+    let (cube, arc) = (DVec3::splat(1.0), DQuat::from_rotation_arc);
+    let at = Placement::new(middle + normal * radius, arc(DVec3::Z, across), radius)?;
+    let corner = |at: u32| DVec2::from_angle(f64::from(at) * (TAU / 24.0));
+    let ring = (0..24).map(corner).collect();
+    let prism = Prism::new(PrismBase::Axis("z".into()), &[ring], None)?.placed(&at)?;
+    all.push(("polygon of 24 corners", Expression::Prism(prism)));
+    let turned = arc(DVec3::X, normal);
+    for (name, triangles, turn, centre) in [
+        ("mesh of a box", shapes::cuboid(-cube, cube), turned, 0.6),
+        (
+            "mesh of 1280 faces",
+            shapes::icosphere(3),
+            DQuat::IDENTITY,
+            1.0,
+        ),
+        (
+            "mesh of 81 920 faces",
+            shapes::icosphere(6),
+            DQuat::IDENTITY,
+            1.0,
+        ),
+    ] {
+        let mesh = Mesh::from_triangles(&triangles.0, &triangles.1, MeshRule::Closed)?;
+        let at = Placement::new(middle + normal * (centre * radius), turn, centre * radius)?;
+        let shape = MeshShape::new(format!("{name}.obj"), Inside::new(mesh, at));
+        all.push((name, Expression::Mesh(shape)));
+    }
+    Ok(all)
 }

@@ -63,6 +63,33 @@ pub fn icosphere(halvings: u32) -> Triangles {
     (vertices, faces)
 }
 
+/// The prism of a regular polygon of radius 1, as far up as down: of walls like needles if it is tall.
+pub fn prism(corners: u32, height: f64) -> Triangles {
+    let ring = |z: f64| {
+        let corner = move |at: u32| {
+            DVec3::from((
+                glam::DVec2::from_angle(f64::from(at) * TAU / f64::from(corners)),
+                z,
+            ))
+        };
+        (0..corners).map(corner)
+    };
+    let ends = [-height, height].map(|z| DVec3::new(0.0, 0.0, z));
+    let vertices = ring(-height).chain(ring(height)).chain(ends).collect();
+    let [low, high] = [2 * corners, 2 * corners + 1];
+    let faces = (0..corners).flat_map(|a| {
+        let b = (a + 1) % corners;
+        let (over_a, over_b) = (a + corners, b + corners);
+        [
+            [a, b, over_b],
+            [a, over_b, over_a],
+            [low, b, a],
+            [high, over_a, over_b],
+        ]
+    });
+    (vertices, faces.collect())
+}
+
 /// The box between two corners.
 pub fn cuboid(low: DVec3, high: DVec3) -> Triangles {
     let corner = |at: u32| {

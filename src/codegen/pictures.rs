@@ -2,8 +2,9 @@
 //! the picture itself.
 
 /// The pictures in `tools/pictures` to which links of the documentation lead.
-pub(crate) const NAMES: [&str; 9] = [
-    "brain", "layers", "linear", "mesh", "modes", "report", "section", "sheet", "stored",
+pub(crate) const NAMES: [&str; 11] = [
+    "brain", "layers", "linear", "mesh", "modes", "organ", "plot", "report", "section", "sheet",
+    "stored",
 ];
 
 /// The definition of the link `NAME picture`.

@@ -132,7 +132,7 @@ pub fn assert_surface(surface: &Surface) {
             assert!(quadric.matrix().is_finite() && quadric.constant().is_finite(), "{quadric:?}");
             assert_eq!(quadric.flipped().flipped(), *quadric);
         }
-        Surface::Inside(inside) => assert_eq!(inside.flipped().flipped(), *inside),
+        Surface::Inside(_) => assert_eq!(surface.complement().complement(), *surface),
     }
 }
 

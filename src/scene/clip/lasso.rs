@@ -7,7 +7,7 @@ use glam::{DMat2, DVec2};
 use super::{Expression, Prism, PrismBase};
 use crate::camera::{Camera, Projection};
 use crate::text_reader::number;
-use rara_base::error::{Error, Result};
+use rara_base::error::{Error, Result, shortened};
 
 /// A polygon in a picture, with holes, whose inside or outside stays visible at every depth. The corners are in pixels from the
 /// picture's top left corner, of which the first pixel's centre is (0.5, 0.5). It parses from text, as `200,300;800,250;500,800`,
@@ -104,7 +104,8 @@ pub(super) fn rings(text: &str) -> Result<Vec<Vec<DVec2>>> {
     let corner = |text: &str| {
         let pair = text.split_once(',').ok_or_else(|| {
             Error::Invalid(format!(
-                "'{text}' is not a corner; give two numbers with a comma between them, and a ; between corners"
+                "'{}' is not a corner; give two numbers with a comma between them, and a ; between corners",
+                shortened(text)
             ))
         })?;
         Ok(DVec2::new(number(pair.0)?, number(pair.1)?))

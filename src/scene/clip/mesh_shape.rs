@@ -13,7 +13,7 @@ use crate::mesh::Mesh;
 use crate::mesh::MeshRule;
 use crate::placement::Placement;
 use crate::text_reader::number;
-use rara_base::error::{Error, Result};
+use rara_base::error::{Error, Result, shortened};
 
 /// The inside of the mesh of a file, scaled, turned and moved. It parses from the text that follows `mesh:`, which is the file and then
 /// these parts in any order: `cutter.stl;scale=0.5;turn=1,0,0,0;at=0,0,2;winding`.
@@ -74,7 +74,8 @@ impl MeshShape {
                 _ => {
                     rule = part.parse().map_err(|_| {
                         Error::Invalid(format!(
-                            "'{part}' is not a part of a mesh; use scale=s, turn=qw,qx,qy,qz, at=x,y,z, closed or winding"
+                            "'{}' is not a part of a mesh; use scale=s, turn=qw,qx,qy,qz, at=x,y,z, closed or winding",
+                            shortened(part)
                         ))
                     })?;
                 }

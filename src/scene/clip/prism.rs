@@ -10,7 +10,7 @@ use super::{Clip, ClipOp, Plane};
 use crate::axis::Axis;
 use crate::placement::Placement;
 use crate::text_reader::{joined, number};
-use rara_base::error::{Error, Result};
+use rara_base::error::{Error, Result, shortened};
 
 /// The points whose place across an axis is inside a polygon, and outside of all its holes: without end along the axis, or between
 /// two heights. It parses from the text that follows `polygon:`, as `z;0,0;2,0;2,1;0,1` or, with heights and a hole,
@@ -63,8 +63,9 @@ impl PrismBase {
                 let named = Axis::parse(name).filter(|_| !name.contains('!'));
                 let Some(along) = named.map(|axis| axis.along) else {
                     return Err(Error::Invalid(format!(
-                        "a polygon cannot have the axis '{name}': give a direction such as 0,0.6,0.8, or one of the axes x, y, z, sagittal, \
-                         coronal and axial"
+                        "a polygon cannot have the axis '{}': give a direction such as 0,0.6,0.8, or one of the axes x, y, z, sagittal, \
+                         coronal and axial",
+                        shortened(name)
                     )));
                 };
                 let [u, v] = across(along);
@@ -321,7 +322,8 @@ pub(super) fn head(text: &str) -> Result<(PrismBase, Option<[f64; 2]>, &str)> {
         Some((base, heights)) => {
             let (low, high) = heights.split_once("..").ok_or_else(|| {
                 Error::Invalid(format!(
-                    "'{heights}' is not two heights; give them as in polygon:z=0..2;..."
+                    "'{}' is not two heights; give them as in polygon:z=0..2;...",
+                    shortened(heights)
                 ))
             })?;
             (base, Some([number(low)?, number(high)?]))
@@ -333,7 +335,7 @@ pub(super) fn head(text: &str) -> Result<(PrismBase, Option<[f64; 2]>, &str)> {
             [x, y, z] => Ok(DVec3::new(x, y, z)),
             _ => Err(Error::Invalid(format!(
                 "'{}' is not a direction; give three numbers",
-                text.trim()
+                shortened(text.trim())
             ))),
         }
     };
@@ -342,7 +344,8 @@ pub(super) fn head(text: &str) -> Result<(PrismBase, Option<[f64; 2]>, &str)> {
         Some(eye) => {
             let [eye, right, down] = eye.split('/').collect::<Vec<_>>()[..] else {
                 return Err(Error::Invalid(format!(
-                    "'{base}' is not an eye; give its place and the directions to the right and down: {FROM_EYE}x,y,z/x,y,z/x,y,z"
+                    "'{}' is not an eye; give its place and the directions to the right and down: {FROM_EYE}x,y,z/x,y,z/x,y,z",
+                    shortened(base)
                 )));
             };
             PrismBase::Eye {

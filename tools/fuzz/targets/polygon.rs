@@ -13,7 +13,7 @@ fuzz_target!(|bytes: &[u8]| {
     };
     // A corner of four bytes is kept as two numbers, and as a value of JSON before that.
     match within(1 << 20, 400, bytes, || text.parse::<Expression>()) {
-        Ok(read) => read.clip().surfaces().iter().for_each(assert_surface),
+        Ok(read) => read.clip().surfaces.iter().for_each(assert_surface),
         Err(error) => assert_readable(&error),
     }
 });

@@ -159,7 +159,10 @@ Record weight_taken_over(uint i, inout Seen splat) {
         }
         if (MESHES) {
             TileFaces faces = mine_record.sides.faces;
-            record.sides.faces = TileFaces(OF(i, faces.bits), OF(i, faces.first), OF(i, faces.known), OF(i, faces.winding));
+            record.sides.faces.first = OF(i, faces.first);
+            if (is_list(record.sides.faces)) {
+                record.sides.faces = TileFaces(OF(i, faces.one), OF(i, faces.other), record.sides.faces.first, OF(i, faces.known), OF(i, faces.winding));
+            }
         }
         record.surfaces.answers = COMBINED && CLIP_MODE == MODE_EXACT ? OF(i, mine_record.surfaces.answers) : 0u;
         if (record.surfaces.answers != 0u) {

@@ -7,6 +7,15 @@ struct Face {
     vec3 a, b, c;
 };
 
+// The face of a list of nine words each without gaps. They begin in a quad behind so many other words, and end at most two quads later.
+Face packed_face(uint before, vec4 x, vec4 y, vec4 z) {
+    vec4 a = before >= 2u ? vec4(x.zw, y.xy) : x;
+    vec4 b = before >= 2u ? vec4(y.zw, z.xy) : y;
+    vec2 c = before >= 2u ? z.zw : z.xy;
+    bool is_odd = (before & 1u) != 0u;
+    return is_odd ? Face(a.yzw, b.xyz, vec3(b.w, c)) : Face(a.xyz, vec3(a.w, b.xy), vec3(b.zw, c.x));
+}
+
 // Where a line crosses faces. It is sheared onto the axis along which it goes fastest, so that all edges are looked at along it.
 struct FaceLine {
     vec3 origin;

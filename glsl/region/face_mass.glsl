@@ -83,7 +83,7 @@ void add_hidden_edge(inout FaceSight face, FaceCorner a, FaceCorner b) {
     face.rest += 4.0 * face.p * aside * reach * half_size * dot((1.0 + at * at) * scale * scale * change, EDGE_WEIGHTS);
 }
 
-// What faces hide together.
+// The sum of what faces hide.
 struct HiddenSum {
     vec2 turn; // half of their solid angles, less whole turns
     float turns;
@@ -139,16 +139,11 @@ void add_face(inout HiddenSum sum, Face face, vec3 known) {
 // A space in which a normal distribution has deviations of 1 and mean 0: the map there from that of the faces.
 struct EvenSpace {
     mat3 map;
-    mat3 from_unit;
     vec3 mean;
 };
 
 // A vertex has no solid angle as seen from itself: the mean is this much aside of where it could be one.
 const vec3 NUDGE = vec3(1.1e-5, -2.3e-5, 1.7e-5);
-
-EvenSpace even_space(Faces faces, vec3 mean, mat3 from_unit) {
-    return EvenSpace(from_unit * to_unit(faces), from_unit, from_unit * mean + NUDGE);
-}
 
 Face in_space(EvenSpace space, Face face) {
     return Face(space.map * face.a - space.mean, space.map * face.b - space.mean, space.map * face.c - space.mean);
@@ -157,10 +152,10 @@ Face in_space(EvenSpace space, Face face) {
 // The share that a mesh keeps of a normal distribution about a point of the unit space, where its faces do not cut each other. `back` is
 // the inverse of its deviations.
 float faces_share(uint base, Faces faces, TileFaces list, vec3 mean, mat3 deviations, mat3 back) {
-    EvenSpace space = even_space(faces, mean, back);
+    EvenSpace space = EvenSpace(back * to_unit(faces), back * mean + NUDGE);
     mat3 sizes = mat3(abs(space.map[0]), abs(space.map[1]), abs(space.map[2]));
     // A record knows how often the mesh winds around the centre.
-    vec3 known = space.from_unit * list.known - space.mean;
+    vec3 known = back * list.known - space.mean;
     HiddenSum sum = HiddenSum(vec2(1.0, 0.0), 0.0, 0.0, 0.0);
     for (FaceWalk walk = face_walk(faces, list);;) {
         while (is_at_node(walk)) {

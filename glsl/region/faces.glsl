@@ -110,14 +110,14 @@ WalkedNode walked_node(Faces faces, uint at) {
 
 // The faces of a group that come into a tile: a bit each in two runs of 64 faces, the first face of each in `first`; or no list.
 struct TileFaces {
-    uvec4 bits;
+    uvec2 one, other;
     uvec2 first;
     vec3 known; // where it is known how often the mesh winds around it, in the unit space
     float winding;
 };
 
 TileFaces no_tile_faces() {
-    return TileFaces(uvec4(0u), uvec2(~0u), vec3(0.0), 0.0);
+    return TileFaces(uvec2(0u), uvec2(0u), uvec2(~0u), vec3(0.0), 0.0);
 }
 
 // A list that has no room for a face is none: its first run is behind all faces.
@@ -127,38 +127,34 @@ bool is_list(TileFaces list) {
     return list.first.x < NO_LIST;
 }
 
+uvec2 run_bit(uint place) {
+    return place < 32u ? uvec2(1u << place, 0u) : uvec2(0u, 1u << (place - 32u));
+}
+
 void add_tile_face(inout TileFaces list, uint face) {
     list.first.x = list.first.x == ~0u ? face : list.first.x;
     uint place = face - list.first.x;
-    if (place >= 64u) {
-        list.first.y = list.first.y == ~0u ? face : list.first.y;
-        place = face - list.first.y;
-        if (place >= 64u) {
-            list.first.x = NO_LIST;
-        } else if (place >= 32u) {
-            list.bits.w |= 1u << (place - 32u);
-        } else {
-            list.bits.z |= 1u << place;
-        }
-    } else if (place >= 32u) {
-        list.bits.y |= 1u << (place - 32u);
-    } else {
-        list.bits.x |= 1u << place;
+    if (place < 64u) {
+        list.one |= run_bit(place);
+        return;
     }
+    list.first.y = list.first.y == ~0u ? face : list.first.y;
+    place = face - list.first.y;
+    list.other |= place < 64u ? run_bit(place) : uvec2(0u);
+    list.first.x = place < 64u ? list.first.x : NO_LIST;
+}
+
+// Takes the first bit off a run that has one.
+uint first_in(inout uvec2 run) {
+    bool is_low = run.x != 0u;
+    uint word = is_low ? run.x : run.y;
+    run = is_low ? uvec2(word & word - 1u, run.y) : uvec2(0u, word & word - 1u);
+    return uint(findLSB(word)) + (is_low ? 0u : 32u);
 }
 
 // Takes the first face off a list that is not empty.
 uint first_of(inout TileFaces list) {
-    if ((list.bits.x | list.bits.y) != 0u) {
-        bool is_low = list.bits.x != 0u;
-        uint word = is_low ? list.bits.x : list.bits.y;
-        list.bits.xy = is_low ? uvec2(word & word - 1u, list.bits.y) : uvec2(0u, word & word - 1u);
-        return list.first.x + uint(findLSB(word)) + (is_low ? 0u : 32u);
-    }
-    bool is_low = list.bits.z != 0u;
-    uint word = is_low ? list.bits.z : list.bits.w;
-    list.bits.zw = is_low ? uvec2(word & word - 1u, list.bits.w) : uvec2(0u, word & word - 1u);
-    return list.first.y + uint(findLSB(word)) + (is_low ? 0u : 32u);
+    return list.one != uvec2(0u) ? list.first.x + first_in(list.one) : list.first.y + first_in(list.other);
 }
 
 // A walk over a group: over its faces, over those of a list, or over those of the nodes that are entered.
@@ -173,8 +169,8 @@ struct FaceWalk {
 FaceWalk face_walk(Faces faces, TileFaces list) {
     uvec4 head = faces.is_walked ? floatBitsToUint(cut_records.at[faces.root]) : uvec4(0u);
     if (is_list(list)) {
-        uvec4 counts = uvec4(bitCount(list.bits));
-        return FaceWalk(0u, faces.root + head.z, 0u, 0u, counts.x + counts.y + counts.z + counts.w, list);
+        ivec2 counts = bitCount(list.one) + bitCount(list.other);
+        return FaceWalk(0u, faces.root + head.z, 0u, 0u, uint(counts.x + counts.y), list);
     }
     return FaceWalk(head.x, faces.root + head.z, 0u, faces.first, faces.is_walked ? 0u : faces.count, list);
 }
@@ -203,17 +199,9 @@ bool takes_face(uint base, Faces faces, inout FaceWalk walk, out Face face) {
         walk.face = first_of(walk.list);
     }
     if (faces.is_walked) {
-        // Nine words without gaps, which begin at any place of a quad.
         uint first = 9u * walk.face;
-        uint aside = first & 3u;
-        vec4 x = cut_records.at[walk.corners + (first >> 2)];
-        vec4 y = cut_records.at[walk.corners + (first >> 2) + 1u];
-        vec4 z = cut_records.at[walk.corners + (first >> 2) + 2u];
-        vec4 a = aside >= 2u ? vec4(x.zw, y.xy) : x;
-        vec4 b = aside >= 2u ? vec4(y.zw, z.xy) : y;
-        vec2 c = aside >= 2u ? z.zw : z.xy;
-        bool is_odd = (aside & 1u) != 0u;
-        face = is_odd ? Face(a.yzw, b.xyz, vec3(b.w, c)) : Face(a.xyz, vec3(a.w, b.xy), vec3(b.zw, c.x));
+        uint at = walk.corners + (first >> 2);
+        face = packed_face(first & 3u, cut_records.at[at], cut_records.at[at + 1u], cut_records.at[at + 2u]);
         face = Face(face.a - faces.centre, face.b - faces.centre, face.c - faces.centre);
     } else {
         face = face_of(base, walk.face);
@@ -223,8 +211,8 @@ bool takes_face(uint base, Faces faces, inout FaceWalk walk, out Face face) {
     return true;
 }
 
-// The part of a mesh that a half-line meets: the nearest crossing, how the winding number grows there, and how often the mesh winds around where
-// it begins.
+// The part of a mesh that a half-line meets: the nearest crossing, how the winding number grows there, and how often the mesh winds
+// around where it begins.
 struct Ahead {
     float t;
     float grows;
@@ -234,8 +222,8 @@ struct Ahead {
 // How far rounding may move what is compared with a node's box, relatively.
 const float WALK_ROUNDING = 1e-6;
 
-// Walks the hierarchy of a group that has one for the part of a line behind `from`. Where faces do not cut each other, nothing behind the nearest crossing
-// counts.
+// Walks the hierarchy of a group that has one for the part of a line behind `from`. Where faces do not cut each other, nothing behind
+// the nearest crossing counts.
 Ahead looked_ahead(Faces faces, FaceLine line, float from) {
     Ahead ahead = Ahead(1e30, 0.0, 0.0);
     for (FaceWalk walk = face_walk(faces);;) {

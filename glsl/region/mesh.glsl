@@ -52,14 +52,9 @@ MeshNode mesh_node(MeshTree tree, uint at) {
 }
 
 Face mesh_face(MeshTree tree, uint face) {
-    // Nine words without gaps, which begin at any place of a quad.
     uint first = 9u * face;
-    float words[9];
-    for (uint i = 0u; i < 9u; i++) {
-        uint at = first + i;
-        words[i] = uintBitsToFloat(meshes.at[tree.faces + (at >> 2)][at & 3u]);
-    }
-    return Face(vec3(words[0], words[1], words[2]), vec3(words[3], words[4], words[5]), vec3(words[6], words[7], words[8]));
+    uint at = tree.faces + (first >> 2);
+    return packed_face(first & 3u, uintBitsToFloat(meshes.at[at]), uintBitsToFloat(meshes.at[at + 1u]), uintBitsToFloat(meshes.at[at + 2u]));
 }
 
 // How often the mesh winds around a point of its space.
@@ -174,7 +169,7 @@ float edge_square(vec3 from, vec3 along) {
     float size = max(dot(along, along), 1e-30);
     float share = clamp(-dot(from, along) / size, 0.0, 1.0);
     vec3 end = share > 0.0 ? from + along : from;
-    // Of a segment that goes far, the place that is nearest has no digits; its distance has.
+    // Where a segment goes far, its nearest place has no digits, but the distance of that has.
     vec3 aside = cross(from, along);
     return share > 0.0 && share < 1.0 ? dot(aside, aside) / size : dot(end, end);
 }

@@ -17,7 +17,7 @@ const float MESH_BEYOND = 1.0;
 // After so many faces that no plane holds, the nearest of them counts for the nearest of all.
 const uint MESH_SEEN = 64u;
 
-// What is left of a mesh for a Gaussian.
+// The rest of a mesh, as a Gaussian sees it.
 struct MeshRest {
     uint needed; // entries; 0 where no face comes near
     float winding; // of the mesh around the centre, where it is needed

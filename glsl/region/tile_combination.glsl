@@ -133,6 +133,21 @@ bool comes_into(TileBox box, Face face) {
     return !is_apart;
 }
 
+// The plane of a face in the faces' space, where its numbers are exact; its values are deviations of the Gaussian.
+vec4 kept_half(Faces faces, Face face) {
+    vec3 normal = cross(face.b - face.a, face.c - face.a);
+    return vec4(normal, -dot(normal, face.a)) * (faces.keeps_outside ? 1.0 : -1.0) / max(length(normal * faces.map), 1e-30);
+}
+
+bool are_one_plane(Faces faces, vec4 one, vec4 other) {
+    return dot(one.xyz, other.xyz) > 0.0
+        && length((one.xyz - other.xyz) * faces.map) * TILE_FLAT_REACH + abs(one.w - other.w) < TILE_FLAT;
+}
+
+UnitSurface seen_half(Faces faces, vec4 plane) {
+    return UnitSurface(vec4(plane.xyz * faces.map, plane.w), vec3(0.0), vec3(0.0));
+}
+
 // The side of a tile in a splat that a mesh cuts and nothing else does: that of the mean, if no face comes near what counts. Where those
 // that do lie in one plane, or in two that meet alike, the record gets these: what bounds a face there are other faces that come near.
 uint faces_side(inout Record record, uint flags, TileSight tile) {
@@ -180,16 +195,13 @@ uint faces_side(inout Record record, uint flags, TileSight tile) {
                 continue;
             }
 #ifdef RARA_SUBGROUP
-            // In the faces' space, where its numbers are exact, by deviations of the Gaussian.
-            vec3 normal = cross(face.b - face.a, face.c - face.a);
-            vec4 plane = vec4(normal, -dot(normal, face.a)) * (faces.keeps_outside ? 1.0 : -1.0) / max(length(normal * faces.map), 1e-30);
-            uint own = 0u;
-            while (own < min(plane_count, 2u) && !(dot(planes[own].xyz, plane.xyz) > 0.0
-                    && length((planes[own].xyz - plane.xyz) * faces.map) * TILE_FLAT_REACH + abs(planes[own].w - plane.w) < TILE_FLAT)) {
-                own++;
-            }
             if (has_front || faces.overlaps) {
                 return SIDE_CUTOFF;
+            }
+            vec4 plane = kept_half(faces, face);
+            uint own = 0u;
+            while (own < min(plane_count, 2u) && !are_one_plane(faces, planes[own], plane)) {
+                own++;
             }
             if (turn == 0u && faces.is_walked) {
                 add_tile_face(record.sides.faces, walk.face - 1u);
@@ -221,8 +233,8 @@ uint faces_side(inout Record record, uint flags, TileSight tile) {
         }
     } else {
         record.surfaces.answers = plane_count == 1u ? FIRST_KEEPS : are_all_kept ? BOTH_KEEP : EITHER_KEEPS;
-        record.surfaces.first = UnitSurface(vec4(planes[0].xyz * faces.map, planes[0].w), vec3(0.0), vec3(0.0));
-        record.surfaces.second = UnitSurface(vec4(planes[1].xyz * faces.map, planes[1].w), vec3(0.0), vec3(0.0));
+        record.surfaces.first = seen_half(faces, planes[0]);
+        record.surfaces.second = seen_half(faces, planes[1]);
     }
 #endif
     return SIDE_CUTOFF;

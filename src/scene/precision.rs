@@ -98,8 +98,9 @@ settings! {
         pub key_bits: u32 as "key-bits"(Precision, "N", |n| (8..=32).contains(n), "a number from 8 to 32"),
         /// Mode exact: the ratio sigma/depth above which a splat's weight is exact in perspective.
         ///
-        /// sigma is the largest standard deviation of the splat, and depth how far its centre is in front of the camera. If the ratio is smaller, the weight is computed as if the rays of
-        /// all pixels were parallel. 0 makes all cut splats exact in perspective.
+        /// sigma is the largest standard deviation of the splat, and depth how far its centre is in front of the camera. If the
+        /// ratio is smaller, the weight is computed as if the rays of all pixels were parallel. 0 makes all cut splats exact in
+        /// perspective.
         pub beam_switch: f32 as "beam-switch"(
             Precision, "X", |x| *x >= 0.0 && x.is_finite(), "a finite number, zero or above"
         ),

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::f64::consts::TAU;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use crate::generate::Random;
 
@@ -66,12 +66,8 @@ pub fn icosphere(halvings: u32) -> Triangles {
 /// The prism of a regular polygon of radius 1, as far up as down: of walls like needles if it is tall.
 pub fn prism(corners: u32, height: f64) -> Triangles {
     let ring = |z: f64| {
-        let corner = move |at: u32| {
-            DVec3::from((
-                glam::DVec2::from_angle(f64::from(at) * TAU / f64::from(corners)),
-                z,
-            ))
-        };
+        let angle = move |at: u32| f64::from(at) * TAU / f64::from(corners);
+        let corner = move |at: u32| DVec2::from_angle(angle(at)).extend(z);
         (0..corners).map(corner)
     };
     let ends = [-height, height].map(|z| DVec3::new(0.0, 0.0, z));

@@ -17,7 +17,7 @@ Mouse:
   wheel                        nearer, farther; in fly mode faster, slower
   right drag                   move the held shape; a plane or slab moves along its normal
   Shift+right drag             turn the held shape about its middle
-  Shift+wheel                  make the held shape larger or smaller
+  Shift+wheel, J, K            make the held shape smaller or larger
   Ctrl+left drag               keep what the outline holds; with Shift what it does not hold
 Keys:
   Tab                          orbit about the scene, or fly
@@ -32,11 +32,8 @@ Keys:
   P, I                         turn the clip on or off; keep the other side of the held shape
   X, Y, Z                      turn the held shape to this axis; a plane also moves to mid-scene
   Page Up, Page Down           move the held shape along its normal or from the eye (Shift: a tenth)
-  J K                          make the held shape smaller or larger
   4 5 6                        put a plane, a box or a sphere in the held shape's place
-  7                            show or hide a slice: the colours on the held shape's cut faces
-  8                            show or hide a line around each cut face
-  9                            show or hide a tint along the edge of each cut face
+  7, 8, 9                      a slice on the held shape's faces; a line, a tint along all cut faces
   Backspace or Ctrl+Z          take back the last change of a clip
   B                            outlines of the shapes on or off
   F1 to F9                     layer 1 to 9 on or off (Shift: next opacity; Ctrl: next tint)
@@ -44,10 +41,8 @@ Keys:
   U                            remove the edited layer's own clip
   M                            show or hide the mode and the clip's numbers
   C or F12                     screenshot
-  F                            print on the terminal the flags that draw this picture
-  T                            print the times and counts of the stages on the terminal
-  H                            show or hide this list
-  Esc                          quit
+  F, T                         print the flags that draw this picture; times and counts of the stages
+  H, Esc                       show or hide this list; quit
 Files dropped on the window:
   a scene                      in place of this one; several are its layers
   a clip (.json)               replaces the edited clip; V: the next named clip of the file

@@ -134,4 +134,14 @@ fn in_a_window_of_any_size_panels_begin_within_it_and_the_keys_beside_the_number
     assert!(numbers.at.0 + numbers.picture.width < keys.at.0);
     assert_eq!(keys.at.0 + keys.picture.width, 1280 - 8);
     assert!(keys.at.1 + keys.picture.height < 720);
+    // A window of 640 by 480 shows the whole list.
+    let panels = laid_out(&overlay.content(&seen(&clips, (640, 480))));
+    let [keys, _] = &panels[..] else {
+        panic!("{} panels", panels.len());
+    };
+    let (width, height) = (keys.picture.width, keys.picture.height);
+    assert!(
+        width < 640 - 2 * 8 && height < 480 - 2 * 8,
+        "{width}x{height}"
+    );
 }

@@ -43,7 +43,7 @@ pub mod scene {
     pub use rara_scene::{
         Attribute, Axis, Bounds, Clusters, Comparison, GaussianArrays, Gaussians, Kind, Layer,
         LayerState, Part, Predicate, Property, Scene, cross_section, extent_along, generate,
-        sh_coefficients,
+        sh_coefficients, sh_of_colour,
     };
     #[cfg(all(feature = "formats", feature = "json"))]
     pub use rara_scene::{layers, trained_folder};

@@ -103,10 +103,8 @@ impl RaraGaussians {
             let set = set.clone();
             Some(SetPart { set, numbers })
         };
-        let properties = self.properties.iter_mut();
-        let properties = properties
-            .map(|property| take(property, &is_taken))
-            .collect();
+        let properties = self.properties_of(&taken.numbers);
+        self.properties = self.properties_of(&rest.numbers);
         (self.gaussians, self.part) = (rest.gaussians, part(rest.numbers));
         Ok(Self {
             properties,
@@ -117,14 +115,8 @@ impl RaraGaussians {
 
     /// The properties of Gaussians that come from these.
     pub(crate) fn properties_of(&self, sources: &[u32]) -> Vec<Property> {
-        let of = |property: &Property| {
-            let value = |&source: &u32| property.values[source as usize];
-            let values = sources.iter().map(value).collect();
-            let mut made = Property::new(property.name.clone(), values);
-            made.single = property.single;
-            made
-        };
-        self.properties.iter().map(of).collect()
+        let properties = self.properties.iter();
+        properties.map(|one| one.of(sources)).collect()
     }
 
     /// Appends the values of another set's properties; one that either of them has not goes.
@@ -138,22 +130,6 @@ impl RaraGaussians {
             more.is_some()
         });
     }
-}
-
-/// Takes the values of some Gaussians out of a property.
-fn take(property: &mut Property, is_taken: &[bool]) -> Property {
-    let mut taken = Property::new(property.name.clone(), Vec::new());
-    taken.single = property.single;
-    let mut is_taken = is_taken.iter();
-    property.values.retain(|&value| {
-        let is_taken = is_taken.next().is_some_and(|taken| *taken);
-        if is_taken {
-            taken.values.push(value);
-        }
-        !is_taken
-    });
-    property.values.shrink_to_fit();
-    taken
 }
 
 /// Reads a predicate, which `name` names in messages.

@@ -6,7 +6,7 @@ use rara::{SortBy, Training};
 
 use super::failure::Failure;
 use super::layer_names::named;
-use rara::scene::layers::{LoadedLayer, SceneLayers};
+use rara::scene::layers::SceneLayers;
 
 /// What flags say of how the scene was trained.
 #[derive(Debug, Clone, Default, Args)]
@@ -137,20 +137,10 @@ impl TrainedOptions {
 /// Refuses layers that were trained in several ways where they become one set, which is drawn in one way. Hidden ones are left
 /// out of it.
 pub(super) fn check_alike(loaded: &SceneLayers) -> Result<(), Failure> {
-    let shown = loaded.layers.iter();
-    let mut shown = shown.filter(|layer| layer.state.visible && !layer.gaussians.is_empty());
-    let Some(first) = shown.next() else {
+    let Some([first, other]) = loaded.trained_otherwise() else {
         return Ok(());
     };
-    // The order of what is one file is that of the first, and the most that a splat covers comes of the format.
-    let of = |layer: &LoadedLayer| {
-        let training = layer.gaussians.training();
-        training.sort_by(SortBy::default()).alpha_max(1.0)
-    };
-    let own = of(first);
-    let other = shown.find(|layer| of(layer) != own);
-    let Some(other) = other else { return Ok(()) };
-    let others = of(other);
+    let [own, others] = [first, other].map(|layer| layer.gaussians.training());
     if own.linear != others.linear {
         return Err(Failure::Usage(format!(
             "the colours of '{}' and '{}' are not both linear light, and one file can have only one of these: write them to \

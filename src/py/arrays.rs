@@ -10,6 +10,9 @@ use pyo3::types::IntoPyDict;
 
 use crate::errors::invalid;
 
+/// An array as a result.
+pub(crate) type Array<'py, T> = Bound<'py, PyArrayDyn<T>>;
+
 /// The shape that an argument must have: `None` stands for any length.
 pub(crate) type Shape<'a> = &'a [Option<usize>];
 
@@ -77,7 +80,7 @@ pub(crate) fn view<'py, T: Element, O>(
     owner: &Bound<'py, O>,
     numbers: &[T],
     shape: &[usize],
-) -> PyResult<Bound<'py, PyArrayDyn<T>>> {
+) -> PyResult<Array<'py, T>> {
     let shaped = ArrayView::from_shape(IxDyn(shape), numbers).map_err(invalid)?;
     // SAFETY: callers give numbers of a frozen object, which stay in place as long as it lives, and the array keeps it alive.
     let array = unsafe { PyArrayDyn::borrow_from_array(&shaped, owner.clone().into_any()) };
@@ -90,6 +93,6 @@ pub(crate) fn owned<'py, T: Element>(
     py: Python<'py>,
     numbers: Vec<T>,
     shape: &[usize],
-) -> PyResult<Bound<'py, PyArrayDyn<T>>> {
+) -> PyResult<Array<'py, T>> {
     numpy::PyArray1::from_vec(py, numbers).reshape(IxDyn(shape))
 }

@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 
 use glam::{DMat4, DVec3};
-use numpy::PyArrayDyn;
 use pyo3::prelude::*;
 use rara::camera_files::{NamedCamera, SavedCamera, load_camera, load_cameras};
 use rara::clip::Expression;
@@ -12,7 +11,7 @@ use rara::{Camera as RaraCamera, Projection, Result};
 use rara_base::files::write_atomically;
 use rara_shots::{Depths, Ease, Framing, Lens, Orbit, Sections, Spline, UP, Visible};
 
-use crate::arrays::{fixed, owned};
+use crate::arrays::{Array, fixed, owned};
 use crate::errors::{check_room, choice, invalid, of_argument, raised};
 use crate::scene::SceneOf;
 
@@ -63,13 +62,8 @@ impl Camera {
         fov_y: f64,
         size: (u32, u32),
     ) -> PyResult<Self> {
-        made(RaraCamera::look_at(
-            eye.into(),
-            target.into(),
-            up.into(),
-            fov_y,
-            size,
-        ))
+        let [eye, target, up] = [eye, target, up].map(DVec3::from);
+        made(RaraCamera::look_at(eye, target, up, fov_y, size))
     }
 
     /// A camera without perspective, whose picture is `height` world units high.
@@ -82,13 +76,8 @@ impl Camera {
         up: [f64; 3],
         size: (u32, u32),
     ) -> PyResult<Self> {
-        made(RaraCamera::orthographic(
-            eye.into(),
-            target.into(),
-            up.into(),
-            height,
-            size,
-        ))
+        let [eye, target, up] = [eye, target, up].map(DVec3::from);
+        made(RaraCamera::orthographic(eye, target, up, height, size))
     }
 
     /// A camera of a rigid world-to-camera matrix `viewmat` [4, 4] and of `K` [3, 3]: focal lengths and the principal point in
@@ -167,7 +156,7 @@ impl Camera {
 
     /// The world-to-camera matrix: float64 [4, 4].
     #[getter]
-    fn viewmat<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    fn viewmat<'py>(&self, py: Python<'py>) -> PyResult<Array<'py, f64>> {
         let matrix = self.camera.world_to_camera().transpose();
         owned(py, matrix.to_cols_array().to_vec(), &[4, 4])
     }
@@ -175,7 +164,7 @@ impl Camera {
     /// Focal lengths and principal point, pixels: float64 [3, 3].
     #[getter]
     #[allow(non_snake_case)] // its name everywhere
-    fn K<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    fn K<'py>(&self, py: Python<'py>) -> PyResult<Array<'py, f64>> {
         let RaraCamera { fx, fy, cx, cy, .. } = self.camera;
         owned(py, vec![fx, 0.0, cx, 0.0, fy, cy, 0.0, 0.0, 1.0], &[3, 3])
     }
@@ -191,25 +180,15 @@ impl Camera {
         near_cut: Option<f64>,
     ) -> PyResult<Self> {
         let camera = self.camera.resized(size.unwrap_or(self.size));
-        let depths = Depths {
-            near: clip_near,
-            far: clip_far,
-            cut: near_cut,
-        };
+        let (near, far, cut) = (clip_near, clip_far, near_cut);
+        let depths = Depths { near, far, cut };
         made(camera.and_then(|camera| depths.camera(camera)))
     }
 
     fn __repr__(&self) -> String {
-        let RaraCamera {
-            eye,
-            width,
-            height,
-            fx,
-            fy,
-            ..
-        } = self.camera;
+        let ((width, height), [x, y, z]) = (self.size, self.eye);
         let kind = if self.ortho { "orthographic, " } else { "" };
-        format!("<rara.Camera: {kind}{width}x{height} at {eye}, fx={fx:.6}, fy={fy:.6}>")
+        format!("<rara.Camera: {kind}{width}x{height} at ({x}, {y}, {z})>")
     }
 }
 
@@ -254,9 +233,9 @@ pub(crate) fn camera_of(
 
 /// Cameras that are as many as asked for.
 fn several(
+    py: Python<'_>,
     frames: u32,
     make: impl FnOnce() -> Result<Vec<RaraCamera>> + Send,
-    py: Python<'_>,
 ) -> PyResult<Vec<Camera>> {
     check_room(frames.into(), 2 * size_of::<Camera>() as u64, "cameras").map_err(raised)?;
     let cameras = py.detach(make).map_err(raised)?;
@@ -284,11 +263,9 @@ pub(crate) fn orbit(
         return Err(invalid(format!("turns is {turns}; give a finite number")));
     }
     let orbit = Orbit::new(turns, frames).ease(choice("ease", ease)?);
-    several(
-        frames,
-        || framing.orbit(orbit, &Visible::of(&scene.scene(&[])?)),
-        py,
-    )
+    several(py, frames, || {
+        framing.orbit(orbit, &Visible::of(&scene.scene(&[])?))
+    })
 }
 
 /// Cameras on a smooth path through others, closed or from the first to the last.
@@ -303,15 +280,10 @@ pub(crate) fn path(
 ) -> PyResult<Vec<Camera>> {
     let through: Vec<_> = cameras.iter().map(|camera| camera.get().camera).collect();
     let ease: Ease = choice("ease", ease)?;
-    several(
-        frames,
-        || {
-            Ok(Spline::through(&through, closed)?
-                .ease(ease)
-                .cameras(frames))
-        },
-        py,
-    )
+    several(py, frames, || {
+        let spline = Spline::through(&through, closed)?.ease(ease);
+        Ok(spline.cameras(frames))
+    })
 }
 
 /// The camera of a section, and its clip as a text: across an axis, "x" or "sagittal", "y" or "coronal", "z" or "axial" ("!" sees it

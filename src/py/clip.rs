@@ -1,65 +1,57 @@
-//! Clips: what stays visible, by the texts of the command line.
-
-use std::path::PathBuf;
+//! A clip, and clips as arguments.
 
 use pyo3::prelude::*;
-use rara::clip::{Expression, NamedClip, load_clips};
-use rara::scene::Bounds;
-use rara::scene::layers::Region;
-use rara::{Clip, Error, Result, Scene};
+use rara::scene::layers::{LayerClip, Region};
 
-use crate::errors::{invalid, of_argument, raised};
+use crate::errors::{invalid, of_argument};
 
-/// A clip as an argument: a text, or an object that has one.
+/// A region that stays visible, by the text of a shape or of an expression.
+///
+/// Texts are those of the command line: "plane:0,0,1,-2", "!sphere:0,0,0,1", "all(box:0,0,0,1,1,1, not(plane:z=40%))".
+/// Lengths in percent are shares of the bounds of the scene that is cut. `a & b` keeps what both keep, `a | b` what either
+/// keeps, and `~a` what `a` does not keep. InvalidError says what is wrong with a text, and in which column.
+#[pyclass(frozen, subclass, eq, str = "{text}", module = "rara")]
+#[derive(Clone, PartialEq)]
+pub(crate) struct Clip {
+    /// The text.
+    #[pyo3(get)]
+    pub(crate) text: String,
+    /// What it means. The files that it names have been read.
+    pub(crate) region: Region,
+}
+
+impl Clip {
+    pub(crate) fn of(text: String) -> PyResult<Self> {
+        let region = text.parse().map_err(of_argument("clip"))?;
+        Ok(Self { text, region })
+    }
+}
+
+/// A clip as an argument: a `rara.Clip`, or a text.
 #[derive(Clone)]
-pub(crate) struct ClipOf(pub(crate) Region);
+pub(crate) struct ClipOf(pub(crate) Clip);
 
 impl<'py> FromPyObject<'_, 'py> for ClipOf {
     type Error = PyErr;
 
     fn extract(given: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
-        let text = given.getattr("text").and_then(|text| text.extract());
-        let text: String = text.or_else(|_| given.extract()).map_err(|_| {
+        if let Ok(clip) = given.cast::<Clip>() {
+            return Ok(Self(clip.get().clone()));
+        }
+        let text = given.extract().map_err(|_| {
             let kind = given.get_type();
             invalid(format!(
                 "clip is a {kind}; give a rara.Clip or the text of one"
             ))
-        })?;
-        text.parse().map(Self).map_err(of_argument("clip"))
+        });
+        Clip::of(text?).map(Self)
     }
 }
 
-impl ClipOf {
-    pub(crate) fn expression(&self, scene: &Scene<'_>) -> Result<Expression> {
-        self.0.resolve(|| Bounds::of(scene))
+/// The clip of a layer as an argument: a clip, or "whole".
+pub(crate) fn own_clip(given: &Bound<'_, PyAny>) -> PyResult<LayerClip<Region>> {
+    match given.extract::<String>() {
+        Ok(text) => LayerClip::parse(&text).map_err(of_argument("clip")),
+        Err(_) => Ok(LayerClip::Region(given.extract::<ClipOf>()?.0.region)),
     }
-
-    pub(crate) fn within(&self, scene: &Scene<'_>) -> Result<Clip> {
-        Ok(self.expression(scene)?.clip())
-    }
-}
-
-/// Checks the text of a clip.
-#[pyfunction]
-pub(crate) fn check_clip(_clip: ClipOf) {}
-
-/// The text of a clip of a JSON file, by its name or its number.
-#[pyfunction]
-pub(crate) fn load_clip(path: PathBuf, name: Option<&str>) -> PyResult<String> {
-    let clips = load_clips(&path).map_err(raised)?;
-    let found = match name {
-        None => <&[NamedClip; 1]>::try_from(&clips[..])
-            .ok()
-            .map(|[only]| only),
-        Some(name) => {
-            let called = clips.iter().find(|clip| clip.name == name);
-            called.or_else(|| clips.get(name.parse::<usize>().ok()?))
-        }
-    };
-    let found = found.ok_or_else(|| {
-        let names: Vec<_> = clips.iter().map(|clip| clip.name.as_str()).collect();
-        let message = format!("name one of its clips: {}", names.join(", "));
-        raised(Error::format(&path, message))
-    })?;
-    Ok(found.clip.to_string())
 }

@@ -4,22 +4,20 @@ use std::io::Cursor;
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use bytemuck::cast_slice;
 use glam::{DAffine3, DMat4, DVec3, Quat, Vec3};
-use numpy::{PyArrayDyn, PyUntypedArrayMethods};
+use numpy::{Element, PyUntypedArrayMethods};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use rara::scene::layers::FileNumbers;
 use rara::scene::{
-    self, Annotations, LoadOptions, LoadReport, Predicate, Property, SaveOptions, sh_coefficients,
+    self, Annotations, LoadOptions, Predicate, Property, SaveOptions, sh_coefficients, sh_of_colour,
 };
-use rara::{BakeSettings, Error, GaussianArrays, Placement, Training};
+use rara::{Error, GaussianArrays, Placement, Training};
 
-use crate::arrays::{fixed, numbers, owned, view};
-use crate::clip::ClipOf;
-use crate::errors::{check_room, choice, invalid, of_argument, plain, raised};
-
-/// The colour that the constant spherical harmonic adds to 0.5.
-const SH_0: f32 = 0.282_094_8;
+use crate::arrays::{Array, fixed, numbers, owned, view};
+use crate::errors::{check_room, choice, invalid, of_argument, raised};
 
 /// The Gaussians of a set, with what a file has beside them. Nothing changes them.
 #[derive(Debug, Default)]
@@ -28,6 +26,8 @@ pub(crate) struct Set {
     pub(crate) properties: Vec<Property>,
     pub(crate) annotations: Option<Annotations>,
     pub(crate) report: Report,
+    /// Their place in a file, where a selection has divided it.
+    pub(crate) numbers: Option<FileNumbers>,
 }
 
 /// What reading has dropped and repaired, with sentences about that.
@@ -51,28 +51,34 @@ pub(crate) struct Report {
 #[pyclass(frozen, module = "rara")]
 pub(crate) struct Gaussians(pub(crate) Arc<Set>);
 
-impl Gaussians {
-    fn of(gaussians: rara::Gaussians) -> Self {
-        Self(Arc::new(Set {
-            gaussians,
-            ..Set::default()
-        }))
+impl From<Set> for Gaussians {
+    fn from(set: Set) -> Self {
+        Self(Arc::new(set))
     }
+}
 
+impl Set {
     /// Other Gaussians that come from these, each from that of a number here.
-    fn derived(&self, gaussians: rara::Gaussians, sources: &[u32]) -> Self {
-        let values = |one: &Property| sources.iter().map(|&at| one.values[at as usize]).collect();
-        let properties = &self.0.properties;
-        Self(Arc::new(Set {
-            properties: properties
-                .iter()
-                .map(|one| Property::new(&one.name, values(one)))
-                .collect(),
+    pub(crate) fn derived(&self, gaussians: rara::Gaussians, sources: &[u32]) -> Gaussians {
+        let properties = self.properties.iter().map(|one| one.of(sources));
+        let (properties, report) = (properties.collect(), self.report.clone());
+        Gaussians::from(Set {
             gaussians,
-            annotations: None,
-            report: self.0.report.clone(),
-        }))
+            properties,
+            report,
+            ..Set::default()
+        })
     }
+}
+
+/// A read-only array over numbers of Gaussians, of which each has so many.
+fn rows<'py, T: Element>(
+    this: &Bound<'py, Gaussians>,
+    of: impl Fn(&Set) -> &[T],
+    each: &[usize],
+) -> PyResult<Array<'py, T>> {
+    let set = &this.get().0;
+    view(this, of(set), &[&[set.gaussians.len()], each].concat())
 }
 
 #[pymethods]
@@ -113,8 +119,8 @@ impl Gaussians {
             }
             (None, Some(colors)) => {
                 let colors = numbers::<f32>(colors, "colors", &[count, Some(3)])?;
-                let constant = |colour: &f32| (colour - 0.5) / SH_0;
-                (0, colors.as_slice()?.iter().map(constant).collect())
+                let colors = colors.as_slice()?.iter();
+                (0, colors.map(|colour| sh_of_colour(*colour)).collect())
             }
             _ => return Err(PyTypeError::new_err("give either sh or colors")),
         };
@@ -148,11 +154,11 @@ impl Gaussians {
             }
             other => raised(other),
         })?;
-        Ok(Self(Arc::new(Set {
+        Ok(Self::from(Set {
             gaussians,
             properties,
             ..Set::default()
-        })))
+        }))
     }
 
     /// Reads Gaussians from the bytes of a file in any format. `name` stands for the file in messages.
@@ -163,31 +169,17 @@ impl Gaussians {
         let read =
             || scene::load_from_with(Cursor::new(data), name.as_ref(), options, &mut |_, _| ());
         let (file, properties) = py.detach(read).map_err(raised)?;
-        let LoadReport {
-            dropped, repaired, ..
-        } = file.report;
-        let notes = file.report.lines();
-        Ok(Self(Arc::new(Set {
+        Ok(Self::from(Set {
             gaussians: file.gaussians,
             properties,
             annotations: file.annotations,
             report: Report {
-                dropped,
-                repaired,
-                notes,
+                dropped: file.report.dropped,
+                repaired: file.report.repaired,
+                notes: file.report.lines(),
             },
-        })))
-    }
-
-    /// Makes Gaussians of a kind, "general", "strands" or "layers", by a seed: the same at every call.
-    #[staticmethod]
-    #[pyo3(signature = (kind, count, seed=1))]
-    fn generate(py: Python<'_>, kind: &str, count: u64, seed: u64) -> PyResult<Self> {
-        let kind = choice("kind", kind)?;
-        check_room(count, 4 * (3 + 3 + 4 + 1 + 48), "Gaussians").map_err(raised)?;
-        Ok(Self::of(
-            py.detach(|| scene::generate(kind, count as usize, seed)),
-        ))
+            numbers: None,
+        }))
     }
 
     fn __len__(&self) -> usize {
@@ -202,29 +194,19 @@ impl Gaussians {
 
     /// Centres, world units from the origin: float32 [N, 3], read-only, no copy.
     #[getter]
-    fn means<'py>(this: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArrayDyn<f32>>> {
-        let gaussians = &this.get().0.gaussians;
-        view(
-            this,
-            bytemuck::cast_slice(gaussians.positions()),
-            &[gaussians.len(), 3],
-        )
+    fn means<'py>(this: &Bound<'py, Self>) -> PyResult<Array<'py, f32>> {
+        rows(this, |set| cast_slice(set.gaussians.positions()), &[3])
     }
 
     /// Standard deviations, world units: float32 [N, 3], read-only, no copy.
     #[getter]
-    fn scales<'py>(this: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArrayDyn<f32>>> {
-        let gaussians = &this.get().0.gaussians;
-        view(
-            this,
-            bytemuck::cast_slice(gaussians.scales()),
-            &[gaussians.len(), 3],
-        )
+    fn scales<'py>(this: &Bound<'py, Self>) -> PyResult<Array<'py, f32>> {
+        rows(this, |set| cast_slice(set.gaussians.scales()), &[3])
     }
 
     /// Unit quaternions w, x, y, z: float32 [N, 4], a copy, since the library has w last.
     #[getter]
-    fn quats<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f32>>> {
+    fn quats<'py>(&self, py: Python<'py>) -> PyResult<Array<'py, f32>> {
         let rotations = self.0.gaussians.rotations();
         let numbers = rotations.iter().flat_map(|q| [q.w, q.x, q.y, q.z]);
         owned(py, numbers.collect(), &[rotations.len(), 4])
@@ -232,28 +214,26 @@ impl Gaussians {
 
     /// Opacities at the centres, 0 to 1: float32 [N], read-only, no copy.
     #[getter]
-    fn opacities<'py>(this: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArrayDyn<f32>>> {
-        let gaussians = &this.get().0.gaussians;
-        view(this, gaussians.opacities(), &[gaussians.len()])
+    fn opacities<'py>(this: &Bound<'py, Self>) -> PyResult<Array<'py, f32>> {
+        rows(this, |set| set.gaussians.opacities(), &[])
     }
 
     /// Spherical harmonics: float32 [N, K, 3], read-only, no copy.
     #[getter]
-    fn sh<'py>(this: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArrayDyn<f32>>> {
-        let gaussians = &this.get().0.gaussians;
-        view(
-            this,
-            gaussians.sh(),
-            &[gaussians.len(), gaussians.sh_coefficients(), 3],
-        )
+    fn sh<'py>(this: &Bound<'py, Self>) -> PyResult<Array<'py, f32>> {
+        let coefficients = this.get().0.gaussians.sh_coefficients();
+        rows(this, |set| set.gaussians.sh(), &[coefficients, 3])
     }
 
     /// Numbers of each Gaussian beside those, by name: float64 [N], read-only, no copies.
     #[getter]
     fn properties<'py>(this: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
         let all = PyDict::new(this.py());
-        for one in &this.get().0.properties {
-            all.set_item(&one.name, view(this, &one.values, &[one.values.len()])?)?;
+        for (at, one) in this.get().0.properties.iter().enumerate() {
+            all.set_item(
+                &one.name,
+                rows(this, |set| &set.properties[at].values, &[])?,
+            )?;
         }
         Ok(all)
     }
@@ -277,11 +257,7 @@ impl Gaussians {
     }
 
     /// Says of each Gaussian whether a predicate of `rara --select` takes it, as "opacity<0.5": bool [N].
-    fn select<'py>(
-        &self,
-        py: Python<'py>,
-        predicate: &str,
-    ) -> PyResult<Bound<'py, PyArrayDyn<bool>>> {
+    fn select<'py>(&self, py: Python<'py>, predicate: &str) -> PyResult<Array<'py, bool>> {
         let predicate: Predicate = predicate.parse().map_err(of_argument("predicate"))?;
         let set = &self.0;
         let select = || predicate.select(&set.gaussians, &set.properties, &Placement::IDENTITY);
@@ -300,7 +276,7 @@ impl Gaussians {
         let mut set = self.0.gaussians.clone();
         let parts = py.detach(|| set.divide(&mask, 2)).map_err(raised)?;
         let part = parts.into_iter().nth(1).unwrap_or_default();
-        Ok(self.derived(part.gaussians, &part.numbers))
+        Ok(self.0.derived(part.gaussians, &part.numbers))
     }
 
     /// Returns the Gaussians moved by an affine matrix [4, 4], in double precision.
@@ -313,33 +289,8 @@ impl Gaussians {
             let message = format!("matrix: it moves Gaussian {first} beyond single precision");
             return Err(invalid(message));
         }
-        Ok(self.derived(
-            gaussians,
-            &(0..self.0.gaussians.len() as u32).collect::<Vec<_>>(),
-        ))
-    }
-
-    /// Makes Gaussians that show a cut without a clip, in any viewer: those outside are dropped, and cut ones replaced by 1 to 3
-    /// `children`. Returns them and counts of what was done. `mode`, `sigma` and `leave` are those of `rara bake`.
-    #[pyo3(signature = (clip, *, mode="exact", sigma=3.0, children=1, leave=1.0))]
-    fn bake(
-        &self,
-        py: Python<'_>,
-        clip: ClipOf,
-        mode: &str,
-        sigma: f32,
-        children: u32,
-        leave: f32,
-    ) -> PyResult<(Self, Py<PyAny>)> {
-        let settings = BakeSettings::default().mode(choice("mode", mode)?);
-        let settings = settings.sigma(sigma).children(children).leave(leave);
-        let gaussians = &self.0.gaussians;
-        let bake = || rara::bake(gaussians, &clip.within(&gaussians.into())?, &settings);
-        let baked = py.detach(bake).map_err(raised)?;
-        Ok((
-            self.derived(baked.gaussians, &baked.sources),
-            plain(py, &baked.counts)?,
-        ))
+        let all: Vec<u32> = (0..gaussians.len() as u32).collect();
+        Ok(self.0.derived(gaussians, &all))
     }
 
     /// Writes them to a file in the format of its name, .ply, .compressed.ply, .spz, .sog or .glb, with their properties where
@@ -354,6 +305,18 @@ impl Gaussians {
         py.detach(|| scene::save_with(&path, &set.gaussians, &options))
             .map_err(raised)
     }
+}
+
+/// Makes Gaussians of a kind, "general", "strands" or "layers", by a seed: the same at every call.
+#[pyfunction]
+#[pyo3(signature = (kind, count, seed=1))]
+pub(crate) fn generate(py: Python<'_>, kind: &str, count: u64, seed: u64) -> PyResult<Gaussians> {
+    let kind = choice("kind", kind)?;
+    check_room(count, 4 * (3 + 3 + 4 + 1 + 48), "Gaussians").map_err(raised)?;
+    Ok(Gaussians::from(Set {
+        gaussians: py.detach(|| scene::generate(kind, count as usize, seed)),
+        ..Set::default()
+    }))
 }
 
 fn vectors(numbers: &[f32]) -> Vec<Vec3> {

@@ -5,6 +5,7 @@ use pyo3::prelude::*;
 mod arrays;
 mod camera;
 mod clip;
+mod clip_methods;
 mod errors;
 mod gaussians;
 mod picture;
@@ -17,15 +18,15 @@ mod _rara {
     #[pymodule_export]
     use super::camera::{Camera, orbit, path, section};
     #[pymodule_export]
-    use super::clip::{check_clip, load_clip};
+    use super::clip::Clip;
     #[pymodule_export]
-    use super::gaussians::Gaussians;
+    use super::gaussians::{Gaussians, generate};
     #[pymodule_export]
     use super::picture::{Picture, compare};
     #[pymodule_export]
     use super::renderer::{Renderer, devices, truth};
     #[pymodule_export]
-    use super::scene::{Numbers, bounds, clip_between, clip_keeps, load, save_clip};
+    use super::scene::{bake, bounds, load, merged};
 
     #[pymodule_init]
     fn begin() {

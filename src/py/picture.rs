@@ -2,13 +2,13 @@
 
 use std::path::PathBuf;
 
-use numpy::{PyArrayDyn, PyUntypedArrayMethods};
+use numpy::PyUntypedArrayMethods;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use rara::{FrameStats, Picture as RaraPicture};
 use rara_reference::comparison;
 
-use crate::arrays::{numbers, owned, view};
+use crate::arrays::{Array, numbers, owned, view};
 use crate::errors::{invalid, plain, raised};
 
 /// A picture: red, green, blue and alpha in 32-bit floats, the colours premultiplied by alpha, row by row from the top left.
@@ -35,14 +35,12 @@ impl Picture {
         let side = |at: usize| u32::try_from(array.shape()[at]).map_err(invalid);
         let (height, width) = (side(0)?, side(1)?);
         let pixels = array.as_slice()?.as_chunks().0.to_vec();
-        Ok(Self::new(
-            RaraPicture {
-                width,
-                height,
-                pixels,
-            },
-            None,
-        ))
+        let picture = RaraPicture {
+            width,
+            height,
+            pixels,
+        };
+        Ok(Self::new(picture, None))
     }
 
     /// Reads a .png or .exr file.
@@ -60,7 +58,7 @@ impl Picture {
 
     /// The pixels: float32 [height, width, 4], premultiplied, read-only, no copy.
     #[getter]
-    fn array<'py>(this: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArrayDyn<f32>>> {
+    fn array<'py>(this: &Bound<'py, Self>) -> PyResult<Array<'py, f32>> {
         let picture = &this.get().picture;
         view(this, picture.pixels.as_flattened(), &shape(picture))
     }
@@ -80,12 +78,9 @@ impl Picture {
     }
 
     /// The pixels as a .png file has them: uint8 [height, width, 4], straight (not premultiplied), round(255 c).
-    fn rgba8<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<u8>>> {
-        owned(
-            py,
-            py.detach(|| self.picture.to_rgba8()),
-            &shape(&self.picture),
-        )
+    fn rgba8<'py>(&self, py: Python<'py>) -> PyResult<Array<'py, u8>> {
+        let bytes = py.detach(|| self.picture.to_rgba8());
+        owned(py, bytes, &shape(&self.picture))
     }
 
     /// The bytes of a .png file.
@@ -103,17 +98,13 @@ impl Picture {
     /// Times and counts of the frame, as `rara render --json` has them; None for a picture that no renderer has drawn.
     #[getter]
     fn stats(&self, py: Python<'_>) -> PyResult<Option<Py<PyAny>>> {
-        self.stats
-            .as_ref()
-            .map(|stats| plain(py, stats))
-            .transpose()
+        let stats = self.stats.as_ref();
+        stats.map(|stats| plain(py, stats)).transpose()
     }
 
     fn __repr__(&self) -> String {
-        format!(
-            "<rara.Picture: {}x{}>",
-            self.picture.width, self.picture.height
-        )
+        let (width, height) = self.size();
+        format!("<rara.Picture: {width}x{height}>")
     }
 }
 
@@ -130,10 +121,7 @@ pub(crate) fn compare(
     a: &Bound<'_, PyAny>,
     b: &Bound<'_, PyAny>,
 ) -> PyResult<Py<PyAny>> {
-    let (a, b) = (
-        Picture::of_pixels(a)?.picture,
-        Picture::of_pixels(b)?.picture,
-    );
-    let found = py.detach(|| comparison::compare(&a, &b)).map_err(raised)?;
-    plain(py, &found)
+    let (a, b) = (Picture::of_pixels(a)?, Picture::of_pixels(b)?);
+    let compare = || comparison::compare(&a.picture, &b.picture);
+    plain(py, &py.detach(compare).map_err(raised)?)
 }

@@ -2,7 +2,6 @@
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use numpy::PyArrayDyn;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
 use rara::ash::vk::{Extent2D, Offset2D, Rect2D};
@@ -14,7 +13,7 @@ use rara::{
 };
 use rara_shots::{Panorama, Slice};
 
-use crate::arrays::owned;
+use crate::arrays::{Array, owned};
 use crate::camera::{Camera, camera_of};
 use crate::clip::ClipOf;
 use crate::errors::{check_room, choice, invalid, raised};
@@ -95,11 +94,10 @@ fn act<R: Send>(
     let settings = settings_of(settings)?;
     let given = camera.as_ref().map(|camera| camera.get().camera);
     let acted = py.detach(|| {
-        let scene = of.scene(&[])?;
         let camera = camera_of(given.as_ref(), *size, of)?;
         let pixels = u64::from(camera.width) * u64::from(camera.height);
         check_room(pixels, 64, "pixels")?; // so much takes one while it is drawn and read back
-        let in_scene = |clip: &ClipOf| clip.expression(&scene);
+        let in_scene = |clip: &ClipOf| clip.0.region.resolve(|| of.bounds());
         let section: Vec<_> = section.iter().map(in_scene).collect::<Result<_>>()?;
         let mut all: Vec<_> = clip.iter().map(in_scene).collect::<Result<_>>()?;
         all.extend_from_slice(&section);
@@ -199,7 +197,7 @@ impl Renderer {
         py: Python<'py>,
         request: Request<'_>,
         names: Vec<String>,
-    ) -> PyResult<Vec<Bound<'py, PyArrayDyn<f32>>>> {
+    ) -> PyResult<Vec<Array<'py, f32>>> {
         let aovs = names.iter().map(|name| choice::<Aov>("names", name));
         let aovs = aovs.collect::<PyResult<Vec<_>>>()?;
         let (size, channels) = self.work(py, &request, |headless, frame| {
@@ -247,7 +245,7 @@ impl Renderer {
 
     fn _slice(&self, py: Python<'_>, request: Request<'_>, plane: ClipOf) -> PyResult<Picture> {
         act(py, &request, |frame| {
-            let shapes = plane.expression(&frame.scene)?.shapes();
+            let shapes = plane.0.region.resolve(|| frame.of.bounds())?.shapes();
             let plane = shapes.first().and_then(Shape::as_plane);
             let plane = plane.ok_or_else(|| Error::Invalid("section: it has no plane".into()))?;
             let mut state = self.state();

@@ -1,26 +1,22 @@
-//! Scenes: layers of Gaussians, reading them, and clips within them.
+//! Scenes: layers of Gaussians, from files and from Python.
 
 use std::cell::LazyCell;
+use std::mem::take;
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use glam::{DQuat, DVec3};
-use numpy::PyArrayDyn;
 use pyo3::prelude::*;
-use rara::clip::{Expression, NamedClip, clips_to_json};
-use rara::scene::layers::{FileNumbers, LayerClip, Region, SelectionRequest, entries, load_by};
-use rara::scene::{Bounds, Property, load_layer, load_with, trained_folder};
-use rara::{Error, LayerState, Placement, Result, Scene};
-use rara_base::files::write_atomically;
+use rara::clip::Expression;
+use rara::scene::layers::{
+    LayerClip, LoadedLayer, Region, SceneLayers, SelectionRequest, entries, load_by,
+};
+use rara::scene::{Bounds, load_layer, load_with, trained_folder};
+use rara::{BakeCounts, BakeSettings, Clip, Error, LayerState, Placement, Result, Scene};
 
-use crate::arrays::{numbers, owned};
-use crate::clip::ClipOf;
-use crate::errors::{invalid, of_argument, raised};
+use crate::clip::{ClipOf, own_clip};
+use crate::errors::{choice, invalid, of_argument, plain, raised};
 use crate::gaussians::{Gaussians, Report, Set};
-
-/// The place of a layer's Gaussians among those of its file, if it is a part of them.
-#[pyclass(frozen)]
-pub(crate) struct Numbers(Arc<FileNumbers>);
 
 /// A layer as `rara.Layer` has it.
 #[derive(FromPyObject)]
@@ -33,7 +29,6 @@ struct LayerFields<'py> {
     opacity: f32,
     visible: bool,
     clip: Option<Bound<'py, PyAny>>,
-    numbers: Option<Bound<'py, Numbers>>,
 }
 
 /// A layer that no Python object can change.
@@ -43,40 +38,32 @@ pub(crate) struct Layer {
     set: Arc<Set>,
     state: LayerState,
     clip: Option<LayerClip<Region>>,
-    numbers: Option<Arc<FileNumbers>>,
 }
 
 impl Layer {
     fn of(given: &LayerFields<'_>) -> PyResult<Self> {
         let [w, x, y, z] = given.rotation;
         let rotation = DQuat::from_xyzw(x, y, z, w);
-        let named = of_argument(&given.name);
-        let placement =
-            Placement::new(given.position.into(), rotation, given.scale).map_err(named)?;
+        let placement = Placement::new(given.position.into(), rotation, given.scale);
+        let placement = placement.map_err(of_argument(&given.name))?;
         let state = LayerState::default().placement(placement);
         let state = state.opacity(given.opacity).visible(given.visible);
         state.check(&given.name).map_err(raised)?;
-        let clip = given.clip.as_ref().map(|clip| {
-            let text = clip.str()?.to_string();
-            LayerClip::parse(&text).map_err(of_argument("clip"))
-        });
         Ok(Self {
             name: given.name.clone(),
             set: given.gaussians.get().0.clone(),
             state,
-            clip: clip.transpose()?,
-            numbers: given
-                .numbers
-                .as_ref()
-                .map(|numbers| numbers.get().0.clone()),
+            clip: given.clip.as_ref().map(own_clip).transpose()?,
         })
     }
 
-    /// True for a layer of the same Gaussians in the same order.
+    fn placed(&self) -> rara::Layer<'_> {
+        rara::Layer::new(&self.name, &self.set.gaussians).with(self.state)
+    }
+
+    /// True for a layer of the same Gaussians.
     pub(crate) fn is_of(&self, other: &Self) -> bool {
-        self.name == other.name
-            && Arc::ptr_eq(&self.set, &other.set)
-            && self.numbers == other.numbers
+        self.name == other.name && Arc::ptr_eq(&self.set, &other.set)
     }
 }
 
@@ -92,25 +79,20 @@ impl<'py> FromPyObject<'_, 'py> for SceneOf {
 
     fn extract(given: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
         if let Ok(gaussians) = given.cast::<Gaussians>() {
-            let (name, set) = ("scene".into(), gaussians.get().0.clone());
-            let (state, clip, numbers) = (LayerState::default(), None, None);
-            let layers = vec![Layer {
-                name,
-                set,
-                state,
-                clip,
-                numbers,
-            }];
-            return Ok(Self { layers, up: None });
+            let layer = Layer {
+                name: "scene".into(),
+                set: gaussians.get().0.clone(),
+                state: LayerState::default(),
+                clip: None,
+            };
+            return Ok(Self {
+                layers: vec![layer],
+                up: None,
+            });
         }
         let (layers, up) = match given.getattr_opt("layers")? {
-            Some(layers) => (
-                layers.extract()?,
-                given.getattr("up")?.extract::<Option<[f64; 3]>>()?,
-            ),
-            None if given.hasattr("gaussians")? => {
-                (vec![given.extract::<LayerFields<'_>>()?], None)
-            }
+            Some(layers) => (layers.extract()?, given.getattr("up")?.extract()?),
+            None if given.hasattr("gaussians")? => (vec![given.extract()?], None),
             None => {
                 let kind = given.get_type();
                 let message =
@@ -118,26 +100,30 @@ impl<'py> FromPyObject<'_, 'py> for SceneOf {
                 return Err(invalid(message));
             }
         };
-        let layers = layers.iter().map(Layer::of).collect::<PyResult<_>>()?;
+        let layers: Vec<LayerFields<'_>> = layers;
         Ok(Self {
-            layers,
-            up: up.map(DVec3::from),
+            layers: layers.iter().map(Layer::of).collect::<PyResult<_>>()?,
+            up: up.map(|up: [f64; 3]| up.into()),
         })
     }
 }
 
 impl SceneOf {
+    pub(crate) fn bounds(&self) -> Bounds {
+        let placed = self.layers.iter().map(Layer::placed);
+        Bounds::of(placed.collect::<Scene<'_>>())
+    }
+
     /// The scene, in which a section also cuts layers that have clips of their own.
     pub(crate) fn scene(&self, section: &[Expression]) -> Result<Scene<'_>> {
-        let placed = self.layers.iter().map(Layer::placed);
-        let bounds = LazyCell::new(|| Bounds::of(placed.clone().collect::<Scene<'_>>()));
+        let bounds = LazyCell::new(|| self.bounds());
         let layers = self.layers.iter().map(|layer| {
             let mut made = layer.placed();
             if let Some(clip) = &layer.clip {
                 made = made.clipped(clip.within(|| *bounds)?.cut_by(section).clip());
             }
-            if let Some(numbers) = &layer.numbers {
-                made = made.numbered(numbers.0, &numbers.1);
+            if let Some((first, numbers)) = &layer.set.numbers {
+                made = made.numbered(*first, numbers);
             }
             Ok(made)
         });
@@ -145,26 +131,23 @@ impl SceneOf {
     }
 }
 
-impl Layer {
-    fn placed(&self) -> rara::Layer<'_> {
-        rara::Layer::new(&self.name, &self.set.gaussians).with(self.state)
-    }
-}
-
 /// Two corners of the box of a scene.
 #[pyfunction]
-pub(crate) fn bounds(py: Python<'_>, scene: SceneOf) -> PyResult<[[f64; 3]; 2]> {
-    let bounds = py
-        .detach(|| scene.scene(&[]).map(Bounds::of))
-        .map_err(raised)?;
-    Ok([bounds.min.into(), bounds.max.into()])
+pub(crate) fn bounds(py: Python<'_>, scene: SceneOf) -> [[f64; 3]; 2] {
+    let bounds = py.detach(|| scene.bounds());
+    [bounds.min.into(), bounds.max.into()]
 }
 
 /// A layer that was read: the fields of `rara.Layer` in their order.
 type ReadLayer = (
-    (String, Gaussians),
-    ([f64; 3], [f64; 4], f64),
-    (f32, bool, Option<String>, Option<Numbers>),
+    String,
+    Gaussians,
+    [f64; 3],
+    [f64; 4],
+    f64,
+    f32,
+    bool,
+    Option<String>,
 );
 
 /// Reads the layers of files, the direction that is up in them, and a report.
@@ -175,18 +158,12 @@ pub(crate) fn load(
     select: Vec<String>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(Vec<ReadLayer>, Option<[f64; 3]>, Report)> {
-    let parse = |text: &String| text.parse::<SelectionRequest>();
-    let select = select
-        .iter()
-        .map(|text| parse(text).map_err(of_argument("select")));
-    let select = select.collect::<PyResult<Vec<_>>>()?;
+    let parsed = select.iter().map(|text| choice("select", text));
+    let select = parsed.collect::<PyResult<Vec<SelectionRequest>>>()?;
     let mut told = Ok(());
     let read = py.detach(|| {
-        let listed = paths
-            .iter()
-            .map(|path| entries(path))
-            .collect::<Result<Vec<_>>>()?;
-        let mut listed = listed.concat();
+        let listed = paths.iter().map(|path| entries(path));
+        let mut listed = listed.collect::<Result<Vec<_>>>()?.concat();
         for request in &select {
             if !request.add_to(&mut listed) {
                 let name = request.layer.as_deref().unwrap_or_default();
@@ -209,112 +186,99 @@ pub(crate) fn load(
         Ok((loaded, trained_folder::stated_up(&paths).or_else(common)))
     });
     told?;
-    let (loaded, up) = read.map_err(raised)?;
-    let (dropped, repaired, notes) = (loaded.dropped, loaded.repaired, loaded.notes);
-    let mut before = 0;
-    let one = loaded.layers.len() == 1;
-    let annotations = Some(loaded.annotations).filter(|_| one);
-    let layers = loaded.layers.into_iter().map(|layer| {
-        let end = before + layer.gaussians.len();
-        let values = |one: &Property| match &layer.numbers {
-            None => one.values[before..end].to_vec(),
-            Some((first, numbers)) => {
-                let all = numbers
-                    .iter()
-                    .map(|number| one.values[(first + number) as usize]);
-                all.collect()
-            }
-        };
-        let properties = loaded.extra.properties.iter();
-        let properties = properties.map(|one| Property::new(&one.name, values(one)));
+    let (mut loaded, up) = read.map_err(raised)?;
+    // Those of several layers are not known by layer.
+    let mut annotations = Some(take(&mut loaded.annotations)).filter(|_| loaded.layers.len() == 1);
+    let layers = (0..loaded.layers.len()).map(|at| {
+        let properties = loaded.properties_of(at);
+        let layer = &mut loaded.layers[at];
         let set = Set {
-            properties: properties.collect(),
-            gaussians: layer.gaussians,
-            annotations: annotations.clone(),
+            properties,
+            gaussians: take(&mut layer.gaussians),
+            annotations: annotations.take(),
             report: Report::default(),
+            numbers: layer.numbers.take(),
         };
-        before = end;
+        let (placed, name) = (layer.state.placement, take(&mut layer.name));
+        let DQuat { x, y, z, w } = placed.rotation();
+        let (position, turn) = (placed.position().into(), [w, x, y, z]);
         let LayerState {
-            placement,
+            opacity, visible, ..
+        } = layer.state;
+        let (set, clip) = (set.into(), layer.clip.as_ref().map(ToString::to_string));
+        (
+            name,
+            set,
+            position,
+            turn,
+            placed.scale(),
             opacity,
             visible,
-            ..
-        } = layer.state;
-        let DQuat { x, y, z, w } = placement.rotation();
-        let clip = layer.clip.map(|clip| clip.to_string());
-        let numbers = layer.numbers.map(|numbers| Numbers(Arc::new(numbers)));
-        (
-            (layer.name, Gaussians(Arc::new(set))),
-            (placement.position().into(), [w, x, y, z], placement.scale()),
-            (opacity, visible, clip, numbers),
+            clip,
         )
     });
+    let layers: Vec<_> = layers.collect();
     let report = Report {
-        dropped,
-        repaired,
-        notes,
+        dropped: loaded.dropped,
+        repaired: loaded.repaired,
+        notes: loaded.notes,
     };
-    Ok((layers.collect(), up.map(Into::into), report))
+    Ok((layers, up.map(Into::into), report))
 }
 
-/// The expression of a clip that may need a scene.
-fn settled(clip: &ClipOf, scene: Option<&SceneOf>) -> PyResult<Expression> {
-    match (&clip.0, scene) {
-        (Region::Fixed(fixed), _) => Ok(fixed.clone()),
-        (_, Some(scene)) => clip
-            .expression(&scene.scene(&[]).map_err(raised)?)
-            .map_err(raised),
-        (_, None) => Err(invalid(
-            "scene is missing: the clip has lengths in percent of one",
-        )),
+/// Makes one set of the layers that are visible, where they are placed, and as faded.
+#[pyfunction]
+pub(crate) fn merged(py: Python<'_>, scene: SceneOf) -> PyResult<Gaussians> {
+    let mut all = SceneLayers::default();
+    for layer in scene.layers.iter().filter(|layer| layer.state.visible) {
+        let mut loaded = LoadedLayer::new(layer.name.clone(), layer.state, None);
+        loaded.gaussians = layer.set.gaussians.clone();
+        all.layers.push(loaded);
+        let properties = layer.set.properties.clone();
+        all.extra.append(properties, Vec::new());
     }
+    if let Some([a, b]) = all.trained_otherwise() {
+        let (a, b) = (&a.name, &b.name);
+        let message = format!(
+            "the layers '{a}' and '{b}' were trained differently, as `training` says; save each by itself"
+        );
+        return Err(invalid(message));
+    }
+    let properties = take(&mut all.extra.properties);
+    Ok(Gaussians::from(Set {
+        gaussians: py.detach(|| all.merged()),
+        properties,
+        ..Set::default()
+    }))
 }
 
-/// Says of each point whether a clip keeps it.
+/// Bakes a clip, or the layers' own, into each layer: the Gaussians of each, and counts of what was done.
 #[pyfunction]
-pub(crate) fn clip_keeps<'py>(
-    clip: ClipOf,
-    points: &Bound<'py, PyAny>,
-    scene: Option<SceneOf>,
-) -> PyResult<Bound<'py, PyArrayDyn<bool>>> {
-    let clip = settled(&clip, scene.as_ref())?.clip();
-    let array = numbers::<f64>(points, "points", &[None, Some(3)])?;
-    let each = array.as_slice()?.as_chunks().0.iter();
-    let kept: Vec<_> = each
-        .map(|point| clip.keeps(DVec3::from_array(*point)))
-        .collect();
-    let count = kept.len();
-    owned(points.py(), kept, &[count])
-}
-
-/// The text of the clip between two others.
-#[pyfunction]
-pub(crate) fn clip_between(
-    from: ClipOf,
-    to: ClipOf,
-    share: f64,
-    scene: Option<SceneOf>,
-) -> PyResult<String> {
-    let (from, to) = (
-        settled(&from, scene.as_ref())?,
-        settled(&to, scene.as_ref())?,
-    );
-    Ok(from.between(&to, share).map_err(raised)?.to_string())
-}
-
-/// Writes a clip to a JSON file.
-#[pyfunction]
-pub(crate) fn save_clip(clip: ClipOf, path: PathBuf, scene: Option<SceneOf>) -> PyResult<()> {
-    let name = path
-        .file_stem()
-        .unwrap_or_default()
-        .to_string_lossy()
-        .into();
-    let clip = settled(&clip, scene.as_ref())?;
-    let json = clips_to_json(&[NamedClip {
-        name,
-        clip,
-        layer: None,
-    }]);
-    write_atomically(&path, |file| file.write_all(json.as_bytes())).map_err(raised)
+pub(crate) fn bake(
+    py: Python<'_>,
+    scene: SceneOf,
+    clip: Option<ClipOf>,
+    mode: &str,
+    settings: (f32, u32, f32), // sigma, children, leave
+) -> PyResult<(Vec<Gaussians>, Py<PyAny>)> {
+    let (sigma, children, leave) = settings;
+    let settings = BakeSettings::default().mode(choice("mode", mode)?);
+    let settings = settings.sigma(sigma).children(children).leave(leave);
+    let baked = py.detach(|| {
+        let clip = clip.map(|ClipOf(clip)| clip.region.resolve(|| scene.bounds()));
+        let clip = clip
+            .transpose()?
+            .map_or_else(Clip::default, |clip| clip.clip());
+        let made = scene.scene(&[])?;
+        let layers = made.layers().iter();
+        let baked = layers.map(|layer| rara::bake_layer(layer, &clip, &settings));
+        baked.collect::<Result<Vec<_>>>()
+    });
+    let mut counts = BakeCounts::default();
+    let baked = baked.map_err(raised)?.into_iter().zip(&scene.layers);
+    let baked = baked.map(|(baked, layer)| {
+        counts += baked.counts;
+        layer.set.derived(baked.gaussians, &baked.sources)
+    });
+    Ok((baked.collect(), plain(py, &counts)?))
 }

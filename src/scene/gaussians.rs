@@ -475,5 +475,10 @@ pub const fn sh_coefficients(degree: u32) -> usize {
     ((degree + 1) * (degree + 1)) as usize
 }
 
+/// Returns the coefficient of the constant spherical harmonic with which a channel has a colour from 0 to 1.
+pub fn sh_of_colour(colour: f32) -> f32 {
+    ((f64::from(colour) - 0.5) / SH_0) as f32
+}
+
 #[cfg(test)]
 mod tests;

@@ -80,7 +80,7 @@ pub use axis::direction;
 pub use bounds::{Bounds, extent_along};
 pub use clusters::Clusters;
 pub use cross_section::cross_section;
-pub use gaussians::{GaussianArrays, Gaussians, sh_coefficients};
+pub use gaussians::{GaussianArrays, Gaussians, sh_coefficients, sh_of_colour};
 #[doc(hidden)]
 pub use generate::Random;
 pub use generate::{Kind, generate};

@@ -21,4 +21,14 @@ impl Property {
             single: false,
         }
     }
+
+    /// The values of the Gaussians of these numbers, in their order.
+    pub fn of(&self, numbers: &[u32]) -> Self {
+        let values = numbers.iter().map(|&number| self.values[number as usize]);
+        Self {
+            name: self.name.clone(),
+            values: values.collect(),
+            single: self.single,
+        }
+    }
 }

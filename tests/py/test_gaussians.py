@@ -1,5 +1,6 @@
 """Gaussians from and to arrays and files."""
 
+import dataclasses
 import gc
 import sys
 
@@ -192,6 +193,28 @@ def test_raw_arrays_are_read_as_files_are(gaussians):
 
 def test_baking_keeps_properties(gaussians, renderer):
     labelled = rara.Gaussians(*arrays(gaussians), properties={"number": np.arange(len(gaussians))})
-    baked, counts = labelled.bake("plane:1,0,0,0")
+    scene, counts = rara.bake(labelled, "plane:1,0,0,0")
+    baked = scene[0].gaussians
     assert len(baked) == counts["visible"] + counts["left"] + counts["children"] < len(gaussians)
     assert len(baked.properties["number"]) == len(baked)
+    layers = rara.Scene([rara.Layer("own", labelled, (0.1, 0, 0), clip="plane:0,1,0,0"), rara.Layer("whole", labelled, clip="whole")])
+    scene, _ = rara.bake(layers, "plane:1,0,0,0")
+    assert [layer.clip for layer in scene] == [None, None] and scene[0].position == (0.1, 0, 0)
+    assert scene[1].gaussians.means.shape == labelled.means.shape
+    once, _ = rara.bake(dataclasses.replace(layers["own"], position=(0, 0, 0), clip=None), "plane:0,1,0,0")
+    np.testing.assert_array_equal(scene[0].gaussians.opacities, once[0].gaussians.opacities)
+
+
+def test_a_scene_is_saved_as_one_set(gaussians, tmp_path):
+    labelled = rara.Gaussians(*arrays(gaussians), properties={"number": np.arange(len(gaussians))})
+    moved = rara.Layer("moved", labelled, (1, 2, 3), opacity=0.5)
+    scene = rara.Scene([gaussians, moved, rara.Layer("hidden", gaussians, visible=False)], up=(0, 0, 1))
+    scene.save(tmp_path / "all.ply")
+    read = rara.load(tmp_path / "all.ply")
+    assert read.up == [0, 0, 1] and not read[0].gaussians.properties
+    np.testing.assert_allclose(read[0].gaussians.means, np.concatenate([gaussians.means, gaussians.means + [1, 2, 3]]), atol=1e-6)
+    np.testing.assert_allclose(read[0].gaussians.opacities, np.concatenate([gaussians.opacities, gaussians.opacities / 2]), atol=1e-6)
+    np.testing.assert_array_equal(rara.Scene([moved]).merged().properties["number"], labelled.properties["number"])
+    antialiased = rara.Gaussians(*arrays(gaussians), antialiased=True)
+    with pytest.raises(rara.InvalidError, match="'0' and '1' were trained differently"):
+        rara.Scene([gaussians, antialiased]).save(tmp_path / "both.ply")

@@ -64,6 +64,7 @@ def test_clips_combine_as_their_texts_do(renderer, gaussians):
     assert list(clip.keeps([[0, 0, 0], [0.5, 0, 0], [-0.5, 0, 0]])) == [False, True, False]
     assert str(rara.Box((0, 0, 0), (1, 2, 3)) | clip) == "any(box:0,0,0,1,2,3, " + str(clip) + ")"
     assert str(clip & "slab:0,0,1,0,1") == str(rara.Clip.all([clip, "slab:0,0,1,0,1"]))
+    assert ("slab:0,0,1,0,1" | clip) == rara.Clip(f"any(slab:0,0,1,0,1, {clip})")
     assert isinstance(rara.Sphere((0, 0, 0), 1), rara.Clip)
 
 

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _rara
-from ._rara import Camera, Picture
-from .clips import Clip, ClipLike
+from ._rara import Camera, Clip, Picture
+from .clips import ClipLike
 from .errors import InvalidError
 from .scenes import SceneLike, _bar
 
@@ -176,7 +176,7 @@ def section(
         if length is not None and not 0 < length < np.inf:
             raise InvalidError(f"{name} is {length}; give a finite number above zero")
     camera, plane = _rara.section(scene, axis, at, size=size, up=up, scale=scale, thickness=thickness)
-    return Shot(camera, section=plane)
+    return Shot(camera, section=Clip(plane))
 
 
 def sweep(start: ClipLike, end: ClipLike, frames: int, scene: Optional[SceneLike] = None) -> list[Clip]:

@@ -35,7 +35,6 @@ class Layer:
     opacity: float = 1.0
     visible: bool = True
     clip: Optional[ClipLike] = None
-    numbers: Optional[_rara.Numbers] = dataclasses.field(default=None, repr=False)  # its place in a file that was divided
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -68,6 +67,15 @@ class Scene:
         changed = dataclasses.replace(self[name], **changes)
         layers = [changed if layer is self[name] else layer for layer in self]
         return dataclasses.replace(self, layers=layers)
+
+    def merged(self) -> Gaussians:
+        """Returns one set of the visible layers, where they are placed and as faded, with the properties that all of them have. Clips of
+        layers are not in it: `rara.bake` bakes them. InvalidError names layers that were trained differently."""
+        return _rara.merged(self)
+
+    def save(self, path: Union[str, PathLike[str]], *, up: Optional[Sequence[float]] = None) -> int:
+        """Writes `merged` to a file as `Gaussians.save` does; `up` is by default that of the scene."""
+        return self.merged().save(path, up=up or self.up)
 
     def __getitem__(self, key: Union[int, str]) -> Layer:
         if isinstance(key, int):
@@ -106,7 +114,27 @@ def load(
 
     called = progress if callable(progress) else tell if bar is not None else None
     layers, up, report = _rara.load(paths, list(select), called)
-    return Scene([Layer(*named, *placed, *shown) for named, placed, shown in layers], up, report)
+    return Scene([Layer(*fields) for fields in layers], up, report)
+
+
+def bake(
+    scene: SceneLike,
+    clip: Optional[ClipLike] = None,
+    *,
+    mode: str = "exact",
+    sigma: float = 3.0,
+    children: int = 1,
+    leave: float = 1.0,
+) -> tuple[Scene, dict[str, int]]:
+    """Makes a scene that shows a cut without a clip, in any viewer, and counts of what was done.
+
+    Gaussians outside the clip, or outside the clip that their layer has of its own, are dropped, and cut ones replaced by 1 to 3
+    `children`. `mode`, `sigma` and `leave` are those of `rara bake`. Layers stay where they are, and have no clips.
+    """
+    layers = scene if isinstance(scene, Scene) else Scene([scene])
+    baked, counts = _rara.bake(layers, clip, mode, (sigma, children, leave))
+    made = [dataclasses.replace(layer, gaussians=one, clip=None) for layer, one in zip(layers, baked)]
+    return dataclasses.replace(layers, layers=made), counts
 
 
 def _bar(**options: Any) -> Any:

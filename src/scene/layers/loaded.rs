@@ -17,6 +17,7 @@ use crate::layer::{Layer, LayerState, Scene};
 use crate::property::Property;
 use crate::scene_file::SceneFile;
 use crate::trained_folder;
+use crate::training::SortBy;
 
 /// A layer that has been read.
 #[derive(Debug, Clone)]
@@ -150,10 +151,7 @@ impl Extra {
     /// Keeps the values of the Gaussians of these numbers, which ascend.
     pub fn keep(&mut self, numbers: &[u32]) {
         for property in &mut self.properties {
-            let values = numbers
-                .iter()
-                .map(|&number| property.values[number as usize]);
-            property.values = values.collect();
+            *property = property.of(numbers);
         }
     }
 
@@ -206,6 +204,36 @@ impl SceneLayers {
             .filter(|layer| !layer.gaussians.is_empty())
             .peekable();
         all.peek().is_none() || all.any(|layer| layer.state.visible)
+    }
+
+    /// The properties that all files have, of the Gaussians of the layer of a number.
+    pub fn properties_of(&self, number: usize) -> Vec<Property> {
+        let (before, layer) = (&self.layers[..number], &self.layers[number]);
+        let numbers: Vec<u32> = match &layer.numbers {
+            Some((first, numbers)) => numbers.iter().map(|number| first + number).collect(),
+            None => {
+                let first: usize = before.iter().map(|layer| layer.gaussians.len()).sum();
+                (first as u32..).take(layer.gaussians.len()).collect()
+            }
+        };
+        let properties = self.extra.properties.iter();
+        properties.map(|one| one.of(&numbers)).collect()
+    }
+
+    /// Two visible layers whose Gaussians were trained so differently that they cannot be [merged](Self::merged), if there are any.
+    pub fn trained_otherwise(&self) -> Option<[&LoadedLayer; 2]> {
+        let mut shown = self
+            .layers
+            .iter()
+            .filter(|layer| layer.state.visible && !layer.gaussians.is_empty());
+        // The order of what is one file is that of the first, and the most that a splat covers comes of the format.
+        let of = |layer: &LoadedLayer| {
+            let training = layer.gaussians.training();
+            training.sort_by(SortBy::default()).alpha_max(1.0)
+        };
+        let first = shown.next()?;
+        let other = shown.find(|layer| of(layer) != of(first))?;
+        Some([first, other])
     }
 
     /// The scene of the layers.

@@ -1,0 +1,153 @@
+//! What clips can do in Python.
+
+use std::path::PathBuf;
+
+use glam::DVec3;
+use pyo3::prelude::*;
+use pyo3::types::PyString;
+use rara::Error;
+use rara::clip::{Expression, NamedClip, clips_to_json, load_clips};
+use rara::scene::layers::Region;
+use rara_base::files::write_atomically;
+
+use crate::arrays::{Array, numbers, owned};
+use crate::clip::{Clip, ClipOf};
+use crate::errors::{invalid, raised};
+use crate::scene::SceneOf;
+
+#[pymethods]
+impl Clip {
+    #[new]
+    fn new(text: String) -> PyResult<Self> {
+        Self::of(text)
+    }
+
+    /// Returns what all clips keep.
+    #[staticmethod]
+    fn all(clips: &Bound<'_, PyAny>) -> PyResult<Self> {
+        joined("all", &texts(clips)?)
+    }
+
+    /// Returns what at least one of the clips keeps.
+    #[staticmethod]
+    fn any(clips: &Bound<'_, PyAny>) -> PyResult<Self> {
+        joined("any", &texts(clips)?)
+    }
+
+    fn __and__(&self, other: ClipOf) -> PyResult<Self> {
+        joined("all", [&self.text, &other.0.text])
+    }
+
+    fn __rand__(&self, other: ClipOf) -> PyResult<Self> {
+        joined("all", [&other.0.text, &self.text])
+    }
+
+    fn __or__(&self, other: ClipOf) -> PyResult<Self> {
+        joined("any", [&self.text, &other.0.text])
+    }
+
+    fn __ror__(&self, other: ClipOf) -> PyResult<Self> {
+        joined("any", [&other.0.text, &self.text])
+    }
+
+    fn __invert__(&self) -> PyResult<Self> {
+        Self::of(format!("!{}", self.text))
+    }
+
+    /// Says of each point, [N, 3], whether the clip keeps it: bool [N]. `scene` is for lengths in percent.
+    #[pyo3(signature = (points, scene=None))]
+    fn keeps<'py>(
+        &self,
+        points: &Bound<'py, PyAny>,
+        scene: Option<SceneOf>,
+    ) -> PyResult<Array<'py, bool>> {
+        let py = points.py();
+        let clip = self.within(scene.as_ref())?.clip();
+        let array = numbers::<f64>(points, "points", &[None, Some(3)])?;
+        let points = array.as_slice()?.as_chunks().0;
+        let keeps = |point: &[f64; 3]| clip.keeps(DVec3::from_array(*point));
+        let kept: Vec<_> = py.detach(|| points.iter().map(keeps).collect());
+        owned(py, kept, &[points.len()])
+    }
+
+    /// Returns the clip at a share, 0 to 1, of the way to another one of the same shapes.
+    #[pyo3(signature = (other, share, scene=None))]
+    fn between(&self, other: ClipOf, share: f64, scene: Option<SceneOf>) -> PyResult<Self> {
+        let [from, to] = [self, &other.0].map(|clip| clip.within(scene.as_ref()));
+        let between = from?.between(&to?, share).map_err(raised)?;
+        Self::of(between.to_string())
+    }
+
+    /// Reads a clip, by its name or number, from a file that `save` or `rara --save-clip` wrote.
+    #[staticmethod]
+    #[pyo3(signature = (path, name=None))]
+    fn load(path: PathBuf, name: Option<&str>) -> PyResult<Self> {
+        let mut clips = load_clips(&path).map_err(raised)?;
+        let found = match name {
+            None => Some(0).filter(|_| clips.len() == 1),
+            Some(name) => {
+                let called = clips.iter().position(|clip| clip.name == name);
+                called.or_else(|| name.parse().ok().filter(|at| *at < clips.len()))
+            }
+        };
+        let found = found.map(|at| clips.swap_remove(at)).ok_or_else(|| {
+            let names: Vec<_> = clips.iter().map(|clip| clip.name.as_str()).collect();
+            let message = format!("name one of its clips: {}", names.join(", "));
+            raised(Error::format(&path, message))
+        })?;
+        Self::of(found.clip.to_string())
+    }
+
+    /// Writes the clip to a JSON file for `load` and `rara --clip-file`. `scene` is for lengths in percent.
+    #[pyo3(signature = (path, scene=None))]
+    fn save(&self, path: PathBuf, scene: Option<SceneOf>) -> PyResult<()> {
+        let json = clips_to_json(&[NamedClip {
+            name: rara::scene::layers::stem(&path),
+            clip: self.within(scene.as_ref())?,
+            layer: None,
+        }]);
+        write_atomically(&path, |file| file.write_all(json.as_bytes())).map_err(raised)
+    }
+
+    fn __hash__(&self, py: Python<'_>) -> PyResult<isize> {
+        PyString::new(py, &self.text).hash()
+    }
+
+    fn __repr__(&self) -> String {
+        format!("rara.Clip({:?})", self.text)
+    }
+}
+
+impl Clip {
+    /// The clip in a scene, where it needs one.
+    fn within(&self, scene: Option<&SceneOf>) -> PyResult<Expression> {
+        match (&self.region, scene) {
+            (Region::Fixed(fixed), _) => Ok(fixed.clone()),
+            (region, Some(scene)) => region.resolve(|| scene.bounds()).map_err(raised),
+            (_, None) => Err(invalid(
+                "scene is missing: the clip has lengths in percent of one",
+            )),
+        }
+    }
+}
+
+/// The texts of clips.
+fn texts(clips: &Bound<'_, PyAny>) -> PyResult<Vec<String>> {
+    let clips = clips.try_iter()?;
+    let clips = clips.map(|clip| clip?.extract::<ClipOf>());
+    clips.map(|clip| clip.map(|clip| clip.0.text)).collect()
+}
+
+/// The clip of several that an operator joins. What the same operator has joined is not nested, so that long chains are not deep.
+fn joined<T: AsRef<str>>(operator: &str, texts: impl IntoIterator<Item = T>) -> PyResult<Clip> {
+    let mut operands = Vec::new();
+    for text in texts {
+        let text = text.as_ref();
+        let inner = text.strip_prefix(operator).and_then(|text| {
+            let inner = text.strip_prefix('(')?.strip_suffix(')')?;
+            Some(inner).filter(|inner| !inner.trim().is_empty())
+        });
+        operands.push(inner.unwrap_or(text).to_owned());
+    }
+    Clip::of(format!("{operator}({})", operands.join(", ")))
+}

@@ -15,7 +15,7 @@ fn every_shape_is_moved_turned_and_scaled_and_drawn_again() {
     let Some(display) = Display::start(&folder) else {
         return;
     };
-    let words = "--size 160x120 --background 0.2,0.4,0.6 --clip sphere:0.2,0,0,0.8 --clip !capsule:-1,0,0,1,0.3,0,0.2 \
+    let words = "--size 160x120 --mode hard --background 0.2,0.4,0.6 --clip sphere:0.2,0,0,0.8 --clip !capsule:-1,0,0,1,0.3,0,0.2 \
                  --clip-expr any(box:0,0,0,0.6,0.4,0.5,1,0.2,0,0.1,not(cone:0,0,-1,0,0,1,0.9))";
     let mut viewer = Viewer::start(&display, &folder, words);
     let mut before = viewer.screenshot("start");
@@ -153,7 +153,8 @@ fn layers_are_switched_and_cut_by_clips_of_their_own() {
     let list = r#"{"layers": [{"path": "scene.ply", "name": "outer skin"}, {"path": "more.ply", "visible": false},
         {"path": "scene.ply", "name": "k=v", "scale": 0.5, "clip_expr": "plane:0,1,0,0"}]}"#;
     fs::write(folder.join("list.json"), list).expect("a list");
-    let words = "@/list.json --no-outline --background 0.2,0.4,0.6 --size 160x120 --clip plane:1,0,0,0 --save-clip @/saved.json";
+    let words = "@/list.json --no-outline --mode hard --background 0.2,0.4,0.6 --size 160x120 --clip plane:1,0,0,0 \
+                 --save-clip @/saved.json";
     let mut viewer = Viewer::open(&display, &folder, words);
     let mut shots: Vec<Picture> = Vec::new();
     let steps = [
@@ -231,7 +232,8 @@ fn a_section_is_what_render_draws_and_can_be_moved() {
     let Some(display) = Display::start(&folder) else {
         return;
     };
-    let section = "--section axial=0.4 --section-thickness 0.8 --clip !sphere:0,0,0,0.3 --size 200x150 --background 0.2,0.4,0.6";
+    let section = "--section axial=0.4 --section-thickness 0.8 --clip !sphere:0,0,0,0.3 --size 200x150 --mode hard \
+                   --background 0.2,0.4,0.6";
     let mut viewer = Viewer::open(
         &display,
         &folder,
@@ -281,7 +283,7 @@ fn a_section_cuts_layers_with_clips_of_their_own_as_in_render() {
         {"path": "scene.ply", "name": "core", "scale": 0.7, "clip_expr": "!sphere:0,0,0,0.3"},
         {"path": "scene.ply", "name": "bone", "scale": 0.2, "position": [0.6, 0.4, -0.8], "clip_expr": "whole"}]}"#;
     fs::write(folder.join("list.json"), list).expect("a list");
-    let section = "--section axial=0.5 --size 160x120 --background 0.2,0.4,0.6";
+    let section = "--section axial=0.5 --size 160x120 --mode hard --background 0.2,0.4,0.6";
     let words = format!("@/list.json --no-outline {section}");
     let mut viewer = Viewer::open(&display, &folder, &words);
     let mut shots: Vec<Picture> = Vec::new();

@@ -22,6 +22,7 @@ const FOV_Y: f64 = 50.0;
 
 /// A camera in COLMAP's convention: +x right, +y down, +z forward, pixel centres at half-integers. A camera does not change.
 ///
+/// Where nothing else is said, pictures are 1024 x 1024 pixels, `fov_y` is 50 degrees, and up is -y.
 /// `Camera.look_at`, `orthographic`, `from_matrices`, `frame`, `load` and `load_all` make cameras.
 #[pyclass(frozen, eq, module = "rara")]
 #[derive(PartialEq)]
@@ -54,30 +55,30 @@ impl Camera {
     /// A camera in perspective at `eye` that looks at `target`; `up` is up in the picture, and `fov_y` the vertical field of view in
     /// degrees. `size` is the width and height of the picture, pixels.
     #[staticmethod]
-    #[pyo3(signature = (eye, target, up=UP.to_array(), fov_y=FOV_Y, size=SIZE))]
+    #[pyo3(signature = (eye, target, up=UP.to_array(), fov_y=FOV_Y, size=Size(SIZE)))]
     fn look_at(
         eye: [f64; 3],
         target: [f64; 3],
         up: [f64; 3],
         fov_y: f64,
-        size: (u32, u32),
+        size: Size,
     ) -> PyResult<Self> {
         let [eye, target, up] = [eye, target, up].map(DVec3::from);
-        made(RaraCamera::look_at(eye, target, up, fov_y, size))
+        made(RaraCamera::look_at(eye, target, up, fov_y, size.0))
     }
 
     /// A camera without perspective, whose picture is `height` world units high.
     #[staticmethod]
-    #[pyo3(signature = (eye, target, height, up=UP.to_array(), size=SIZE))]
+    #[pyo3(signature = (eye, target, height, up=UP.to_array(), size=Size(SIZE)))]
     fn orthographic(
         eye: [f64; 3],
         target: [f64; 3],
         height: f64,
         up: [f64; 3],
-        size: (u32, u32),
+        size: Size,
     ) -> PyResult<Self> {
         let [eye, target, up] = [eye, target, up].map(DVec3::from);
-        made(RaraCamera::orthographic(eye, target, up, height, size))
+        made(RaraCamera::orthographic(eye, target, up, height, size.0))
     }
 
     /// A camera of a rigid world-to-camera matrix `viewmat` [4, 4] and of `K` [3, 3]: focal lengths and the principal point in
@@ -110,16 +111,16 @@ impl Camera {
     /// The camera that shows all that is visible of a scene, from the front, the right and above, as near as possible. `up` is
     /// by default that of the scene, or -y. With `ortho` it has no perspective.
     #[staticmethod]
-    #[pyo3(signature = (scene, size=SIZE, *, fov_y=FOV_Y, up=None, ortho=false))]
+    #[pyo3(signature = (scene, size=Size(SIZE), *, fov_y=FOV_Y, up=None, ortho=false))]
     fn frame(
         py: Python<'_>,
         scene: SceneOf,
-        size: (u32, u32),
+        size: Size,
         fov_y: f64,
         up: Option<[f64; 3]>,
         ortho: bool,
     ) -> PyResult<Self> {
-        let framing = framing(&scene, size, (fov_y, up, ortho));
+        let framing = framing(&scene, size.0, (fov_y, up, ortho));
         made(py.detach(|| framing.camera(&Visible::of(&scene.scene(&[])?))))
     }
 
@@ -127,10 +128,11 @@ impl Camera {
     /// cameras.json, transforms.json or a COLMAP folder. `undistort` takes the pinhole of a lens that bends straight lines.
     #[staticmethod]
     #[pyo3(signature = (path, view=None, *, undistort=false))]
-    fn load(path: PathBuf, view: Option<String>, undistort: bool) -> PyResult<Self> {
+    fn load(path: PathBuf, view: Option<Bound<'_, PyAny>>, undistort: bool) -> PyResult<Self> {
         let Some(view) = view else {
             return made(load_camera(&path));
         };
+        let view = view.str()?.to_string();
         let cameras = load_cameras(&path).map_err(raised)?;
         let found = cameras.iter().find(|camera| camera.name() == view);
         let found = found.or_else(|| cameras.get(view.parse::<usize>().ok()?));
@@ -174,12 +176,12 @@ impl Camera {
     #[pyo3(signature = (*, size=None, clip_near=None, clip_far=None, near_cut=None))]
     fn replace(
         &self,
-        size: Option<(u32, u32)>,
+        size: Option<Size>,
         clip_near: Option<f64>,
         clip_far: Option<f64>,
         near_cut: Option<f64>,
     ) -> PyResult<Self> {
-        let camera = self.camera.resized(size.unwrap_or(self.size));
+        let camera = self.camera.resized(size.map_or(self.size, |size| size.0));
         let (near, far, cut) = (clip_near, clip_far, near_cut);
         let depths = Depths { near, far, cut };
         made(camera.and_then(|camera| depths.camera(camera)))
@@ -189,6 +191,40 @@ impl Camera {
         let ((width, height), [x, y, z]) = (self.size, self.eye);
         let kind = if self.ortho { "orthographic, " } else { "" };
         format!("<rara.Camera: {kind}{width}x{height} at ({x}, {y}, {z})>")
+    }
+}
+
+/// A camera as an argument.
+pub(crate) struct CameraOf(pub(crate) RaraCamera);
+
+impl<'py> FromPyObject<'_, 'py> for CameraOf {
+    type Error = PyErr;
+
+    fn extract(given: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        let camera = given.cast::<Camera>().map_err(|_| {
+            let kind = given.get_type();
+            invalid(format!(
+                "camera is a {kind}; give a rara.Camera, a clip by clip=..., and of a rara.Shot its camera, clip and section"
+            ))
+        })?;
+        Ok(Self(camera.get().camera))
+    }
+}
+
+/// The width and height of a picture as an argument: a sequence of both.
+pub(crate) struct Size(pub(crate) (u32, u32));
+
+impl<'py> FromPyObject<'_, 'py> for Size {
+    type Error = PyErr;
+
+    fn extract(given: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        let [width, height] = given.extract().map_err(|_| {
+            invalid(format!(
+                "size is {:?}; give a width and a height, pixels",
+                &*given
+            ))
+        })?;
+        Ok(Self((width, height)))
     }
 }
 
@@ -245,20 +281,20 @@ fn several(
 /// Cameras on an orbit around the middle of what is visible of a scene, as near as possible with all of it in every picture.
 /// `turns` below zero turn to the left, and `ease` is the pace: "none", "in", "out" or "both".
 #[pyfunction]
-#[pyo3(signature = (scene, frames=120, *, turns=1.0, size=SIZE, fov_y=FOV_Y, up=None, ortho=false, ease="none"))]
+#[pyo3(signature = (scene, frames=120, *, turns=1.0, size=Size(SIZE), fov_y=FOV_Y, up=None, ortho=false, ease="none"))]
 #[allow(clippy::too_many_arguments)] // they have names in Python
 pub(crate) fn orbit(
     py: Python<'_>,
     scene: SceneOf,
     frames: u32,
     turns: f64,
-    size: (u32, u32),
+    size: Size,
     fov_y: f64,
     up: Option<[f64; 3]>,
     ortho: bool,
     ease: &str,
 ) -> PyResult<Vec<Camera>> {
-    let framing = framing(&scene, size, (fov_y, up, ortho));
+    let framing = framing(&scene, size.0, (fov_y, up, ortho));
     if !turns.is_finite() {
         return Err(invalid(format!("turns is {turns}; give a finite number")));
     }
@@ -290,14 +326,14 @@ pub(crate) fn path(
 /// from the other side), at a share from 0 to 1 of the scene's bounds. `thickness` is that of a slab, and `scale` the world units to
 /// a pixel; without them all that is behind the plane is kept and shown.
 #[pyfunction]
-#[pyo3(signature = (scene, axis, at, *, size=SIZE, up=None, scale=None, thickness=None))]
+#[pyo3(signature = (scene, axis, at, *, size=Size(SIZE), up=None, scale=None, thickness=None))]
 #[allow(clippy::too_many_arguments)] // they have names in Python
 pub(crate) fn section(
     py: Python<'_>,
     scene: SceneOf,
     axis: &str,
     at: f64,
-    size: (u32, u32),
+    size: Size,
     up: Option<[f64; 3]>,
     scale: Option<f64>,
     thickness: Option<f64>,
@@ -308,7 +344,7 @@ pub(crate) fn section(
         ))
     };
     let axis = Axis::parse(axis).ok_or_else(unknown)?;
-    let sections = Sections::new(size).up(up.map(DVec3::from));
+    let sections = Sections::new(size.0).up(up.map(DVec3::from));
     let sections = sections.scale(scale).thickness(thickness);
     let section = py.detach(|| {
         let scene = scene.scene(&[])?;

@@ -1,9 +1,14 @@
 //! A clip, and clips as arguments.
 
-use pyo3::prelude::*;
-use rara::scene::layers::{LayerClip, Region};
+use std::path::PathBuf;
 
-use crate::errors::{invalid, of_argument};
+use glam::DQuat;
+use pyo3::prelude::*;
+use rara::clip::{Expression, MeshShape};
+use rara::scene::layers::{LayerClip, Region};
+use rara::{MeshRule, Placement};
+
+use crate::errors::{invalid, of_argument, raised};
 
 /// A region that stays visible, by the text of a shape or of an expression.
 ///
@@ -24,6 +29,45 @@ impl Clip {
     pub(crate) fn of(text: String) -> PyResult<Self> {
         let region = text.parse().map_err(of_argument("clip"))?;
         Ok(Self { text, region })
+    }
+}
+
+impl From<Expression> for Clip {
+    fn from(expression: Expression) -> Self {
+        Self {
+            text: expression.to_string(),
+            region: Region::Fixed(expression),
+        }
+    }
+}
+
+/// Keeps the inside of the closed mesh of a file (.obj, .stl, .ply, .gltf or .glb), scaled, turned by a quaternion w, x, y, z, and
+/// then moved, world units. The file is read once.
+///
+/// With `winding`, the mesh may be open or cut itself: its inside is where the winding number is not zero.
+#[pyclass(frozen, extends = Clip, module = "rara")]
+pub(crate) struct Mesh;
+
+#[pymethods]
+impl Mesh {
+    #[new]
+    #[pyo3(signature = (path, *, scale=1.0, rotation=[1.0, 0.0, 0.0, 0.0], position=[0.0; 3], winding=false))]
+    fn new(
+        path: PathBuf,
+        scale: f64,
+        rotation: [f64; 4],
+        position: [f64; 3],
+        winding: bool,
+    ) -> PyResult<PyClassInitializer<Self>> {
+        let [w, x, y, z] = rotation;
+        let placement = Placement::new(position.into(), DQuat::from_xyzw(x, y, z, w), scale);
+        let rule = match winding {
+            true => MeshRule::Winding,
+            false => MeshRule::Closed,
+        };
+        let mesh = placement.and_then(|placement| MeshShape::read(path, rule, placement));
+        let mesh = Expression::Mesh(mesh.map_err(raised)?);
+        Ok(PyClassInitializer::from(Clip::from(mesh)).add_subclass(Self))
     }
 }
 

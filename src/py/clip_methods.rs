@@ -25,33 +25,43 @@ impl Clip {
     /// Returns what all clips keep.
     #[staticmethod]
     fn all(clips: &Bound<'_, PyAny>) -> PyResult<Self> {
-        joined("all", &texts(clips)?)
+        joined("all", clips.try_iter()?)
     }
 
     /// Returns what at least one of the clips keeps.
     #[staticmethod]
     fn any(clips: &Bound<'_, PyAny>) -> PyResult<Self> {
-        joined("any", &texts(clips)?)
+        joined("any", clips.try_iter()?)
     }
 
-    fn __and__(&self, other: ClipOf) -> PyResult<Self> {
-        joined("all", [&self.text, &other.0.text])
+    fn __and__<'py>(this: Bound<'py, Self>, other: Bound<'py, PyAny>) -> PyResult<Self> {
+        joined("all", [this.into_any(), other].map(Ok))
     }
 
-    fn __rand__(&self, other: ClipOf) -> PyResult<Self> {
-        joined("all", [&other.0.text, &self.text])
+    fn __rand__<'py>(this: Bound<'py, Self>, other: Bound<'py, PyAny>) -> PyResult<Self> {
+        joined("all", [other, this.into_any()].map(Ok))
     }
 
-    fn __or__(&self, other: ClipOf) -> PyResult<Self> {
-        joined("any", [&self.text, &other.0.text])
+    fn __or__<'py>(this: Bound<'py, Self>, other: Bound<'py, PyAny>) -> PyResult<Self> {
+        joined("any", [this.into_any(), other].map(Ok))
     }
 
-    fn __ror__(&self, other: ClipOf) -> PyResult<Self> {
-        joined("any", [&other.0.text, &self.text])
+    fn __ror__<'py>(this: Bound<'py, Self>, other: Bound<'py, PyAny>) -> PyResult<Self> {
+        joined("any", [other, this.into_any()].map(Ok))
     }
 
     fn __invert__(&self) -> PyResult<Self> {
-        Self::of(format!("!{}", self.text))
+        Ok(match &self.region {
+            Region::Fixed(Expression::Not(inner)) => Self::from(Expression::clone(inner)),
+            // The text's shape is one that keeps the outside.
+            Region::Fixed(Expression::Shape(_)) | Region::Relative(..) => {
+                Self::of(format!("!{}", self.text))?
+            }
+            Region::Fixed(fixed) => Self {
+                text: format!("!{}", self.text),
+                region: Region::Fixed(Expression::Not(Box::new(fixed.clone()))),
+            },
+        })
     }
 
     /// Says of each point, [N, 3], whether the clip keeps it: bool [N]. `scene` is for lengths in percent.
@@ -74,16 +84,19 @@ impl Clip {
     #[pyo3(signature = (other, share, scene=None))]
     fn between(&self, other: ClipOf, share: f64, scene: Option<SceneOf>) -> PyResult<Self> {
         let [from, to] = [self, &other.0].map(|clip| clip.within(scene.as_ref()));
-        let between = from?.between(&to?, share).map_err(raised)?;
-        Self::of(between.to_string())
+        if !(0.0..=1.0).contains(&share) {
+            return Err(invalid(format!("share is {share}; give 0 to 1")));
+        }
+        Ok(from?.between(&to?, share).map_err(raised)?.into())
     }
 
     /// Reads a clip, by its name or number, from a file that `save` or `rara --save-clip` wrote.
     #[staticmethod]
     #[pyo3(signature = (path, name=None))]
-    fn load(path: PathBuf, name: Option<&str>) -> PyResult<Self> {
+    fn load(path: PathBuf, name: Option<Bound<'_, PyAny>>) -> PyResult<Self> {
         let mut clips = load_clips(&path).map_err(raised)?;
-        let found = match name {
+        let name = name.map(|name| name.str().map(|name| name.to_string()));
+        let found = match name.transpose()? {
             None => Some(0).filter(|_| clips.len() == 1),
             Some(name) => {
                 let called = clips.iter().position(|clip| clip.name == name);
@@ -95,7 +108,7 @@ impl Clip {
             let message = format!("name one of its clips: {}", names.join(", "));
             raised(Error::format(&path, message))
         })?;
-        Self::of(found.clip.to_string())
+        Ok(found.clip.into())
     }
 
     /// Writes the clip to a JSON file for `load` and `rara --clip-file`. `scene` is for lengths in percent.
@@ -131,23 +144,43 @@ impl Clip {
     }
 }
 
-/// The texts of clips.
-fn texts(clips: &Bound<'_, PyAny>) -> PyResult<Vec<String>> {
-    let clips = clips.try_iter()?;
-    let clips = clips.map(|clip| clip?.extract::<ClipOf>());
-    clips.map(|clip| clip.map(|clip| clip.0.text)).collect()
-}
+/// The most levels of parentheses that clips are joined to.
+const DEEP: i32 = 40;
 
 /// The clip of several that an operator joins. What the same operator has joined is not nested, so that long chains are not deep.
-fn joined<T: AsRef<str>>(operator: &str, texts: impl IntoIterator<Item = T>) -> PyResult<Clip> {
-    let mut operands = Vec::new();
-    for text in texts {
-        let text = text.as_ref();
+fn joined<'py>(
+    operator: &str,
+    clips: impl IntoIterator<Item = PyResult<Bound<'py, PyAny>>>,
+) -> PyResult<Clip> {
+    let (mut texts, mut fixed, mut is_fixed) = (Vec::new(), Vec::new(), true);
+    for clip in clips {
+        let Clip { text, region } = clip?.extract::<ClipOf>()?.0;
         let inner = text.strip_prefix(operator).and_then(|text| {
             let inner = text.strip_prefix('(')?.strip_suffix(')')?;
             Some(inner).filter(|inner| !inner.trim().is_empty())
         });
-        operands.push(inner.unwrap_or(text).to_owned());
+        match (region, inner) {
+            (Region::Fixed(Expression::All(own) | Expression::Any(own)), Some(_)) => {
+                fixed.extend(own);
+            }
+            (Region::Fixed(own), None) => fixed.push(own),
+            _ => is_fixed = false,
+        }
+        texts.push(inner.unwrap_or(&text).to_owned());
     }
-    Clip::of(format!("{operator}({})", operands.join(", ")))
+    let text = format!("{operator}({})", texts.join(", "));
+    let (mut open, mut depth) = (0, 0);
+    for letter in text.chars() {
+        open += i32::from(letter == '(') - i32::from(letter == ')');
+        depth = depth.max(open);
+    }
+    // Files of meshes are not read again, as the text's would be.
+    if !is_fixed || fixed.is_empty() || depth > DEEP {
+        return Clip::of(text);
+    }
+    let region = Region::Fixed(match operator {
+        "all" => Expression::All(fixed),
+        _ => Expression::Any(fixed),
+    });
+    Ok(Clip { text, region })
 }

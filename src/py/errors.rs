@@ -9,8 +9,12 @@ use serde::Serialize;
 
 /// The exception of an error: that of its kind, with its message.
 pub(crate) fn raised(error: Error) -> PyErr {
-    let kind = match error {
-        Error::Io { .. } => "IoError",
+    let mut io = None;
+    let kind = match &error {
+        Error::Io { path, source } => {
+            io = Some((path.clone().into_os_string(), source.raw_os_error()));
+            "IoError"
+        }
         Error::Format { .. } => "FormatError",
         Error::Invalid(_) => "InvalidError",
         Error::Device(_) => "DeviceError",
@@ -25,8 +29,15 @@ pub(crate) fn raised(error: Error) -> PyErr {
         let made = py
             .import("rara.errors")
             .and_then(|errors| errors.getattr(kind));
-        made.and_then(|kind| kind.call1((error.to_string(),)))
-            .map_or_else(|other| other, PyErr::from_value)
+        let made = made.and_then(|kind| {
+            let made = kind.call1((error.to_string(),))?;
+            if let Some((path, code)) = io {
+                made.setattr("filename", path)?;
+                made.setattr("errno", code)?;
+            }
+            Ok(made)
+        });
+        made.map_or_else(|other| other, PyErr::from_value)
     })
 }
 

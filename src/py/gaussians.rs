@@ -119,16 +119,31 @@ impl Gaussians {
             }
             (None, Some(colors)) => {
                 let colors = numbers::<f32>(colors, "colors", &[count, Some(3)])?;
-                let colors = colors.as_slice()?.iter();
-                (0, colors.map(|colour| sh_of_colour(*colour)).collect())
+                let colors = colors.as_slice()?;
+                if let Some(at) = colors.iter().position(|colour| !colour.is_finite()) {
+                    let (index, colour) = (at / 3, colors[at]);
+                    return Err(invalid(format!(
+                        "colors[{index}] is {colour}; give finite numbers"
+                    )));
+                }
+                (
+                    0,
+                    colors.iter().map(|colour| sh_of_colour(*colour)).collect(),
+                )
             }
             _ => return Err(PyTypeError::new_err("give either sh or colors")),
         };
+        let quats = quats.as_slice()?.as_chunks().0;
+        let turns: Vec<_> = quats.iter().map(unit).collect();
+        if let Some(at) = turns.iter().position(|turn| !turn.is_finite()) {
+            let message = format!("quats[{at}] is {:?}; give a rotation w, x, y, z", quats[at]);
+            return Err(invalid(message));
+        }
         let arrays = GaussianArrays {
             origin: origin.into(),
             positions: vectors(means.as_slice()?),
             scales: vectors(scales.as_slice()?),
-            rotations: quats.as_slice()?.as_chunks().0.iter().map(unit).collect(),
+            rotations: turns,
             opacities: numbers::<f32>(opacities, "opacities", &[count])?
                 .as_slice()?
                 .to_vec(),
@@ -148,10 +163,7 @@ impl Gaussians {
         let properties = properties.collect::<PyResult<_>>()?;
         let made = py.detach(|| rara::Gaussians::new(arrays));
         let gaussians = made.map_err(|error| match error {
-            Error::Invalid(message) => {
-                let message = message.replacen("positions[", "means[", 1);
-                invalid(message.replacen("rotations[", "quats[", 1))
-            }
+            Error::Invalid(message) => invalid(message.replacen("positions[", "means[", 1)),
             other => raised(other),
         })?;
         Ok(Self::from(Set {
@@ -256,7 +268,8 @@ impl Gaussians {
         self.0.report.clone()
     }
 
-    /// Says of each Gaussian whether a predicate of `rara --select` takes it, as "opacity<0.5": bool [N].
+    /// Says of each Gaussian whether a predicate of `rara --select` takes it: bool [N]. "opacity<0.5 and label in 3,4" compares
+    /// `opacity`, `size`, `cluster_size`, `red`, `green`, `blue` and `properties`; "inside(CLIP)" takes what a clip keeps.
     fn select<'py>(&self, py: Python<'py>, predicate: &str) -> PyResult<Array<'py, bool>> {
         let predicate: Predicate = predicate.parse().map_err(of_argument("predicate"))?;
         let set = &self.0;
@@ -282,6 +295,9 @@ impl Gaussians {
     /// Returns the Gaussians moved by an affine matrix [4, 4], in double precision.
     fn transform(&self, py: Python<'_>, matrix: &Bound<'_, PyAny>) -> PyResult<Self> {
         let matrix = fixed::<16>(matrix, "matrix", [4, 4])?;
+        if matrix[12..] != [0.0, 0.0, 0.0, 1.0] {
+            return Err(invalid("matrix is not affine; its last row is 0, 0, 0, 1"));
+        }
         let matrix = DAffine3::from_mat4(DMat4::from_cols_array(&matrix).transpose());
         let mut gaussians = self.0.gaussians.clone();
         let dropped = py.detach(|| gaussians.transform(&matrix));

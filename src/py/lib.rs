@@ -18,7 +18,7 @@ mod _rara {
     #[pymodule_export]
     use super::camera::{Camera, orbit, path, section};
     #[pymodule_export]
-    use super::clip::Clip;
+    use super::clip::{Clip, Mesh};
     #[pymodule_export]
     use super::gaussians::{Gaussians, generate};
     #[pymodule_export]

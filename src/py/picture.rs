@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use numpy::PyUntypedArrayMethods;
+use numpy::{PyArrayDescrMethods, PyUntypedArray, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use rara::{FrameStats, Picture as RaraPicture};
@@ -31,6 +31,11 @@ impl Picture {
 impl Picture {
     #[new]
     fn of_pixels(pixels: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let given = pixels.cast::<PyUntypedArray>();
+        if given.is_ok_and(|array| array.dtype().kind() != b'f') {
+            let message = "pixels is an array of integers; give floats, premultiplied, from 0 to 1";
+            return Err(invalid(message));
+        }
         let array = numbers::<f32>(pixels, "pixels", &[None, None, Some(4)])?;
         let side = |at: usize| u32::try_from(array.shape()[at]).map_err(invalid);
         let (height, width) = (side(0)?, side(1)?);

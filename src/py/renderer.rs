@@ -14,7 +14,7 @@ use rara::{
 use rara_shots::{Panorama, Slice};
 
 use crate::arrays::{Array, owned};
-use crate::camera::{Camera, camera_of};
+use crate::camera::{CameraOf, Size, camera_of};
 use crate::clip::ClipOf;
 use crate::errors::{check_room, choice, invalid, raised};
 use crate::picture::Picture;
@@ -69,10 +69,10 @@ impl State {
 /// settings.
 pub(crate) type Request<'py> = (
     SceneOf,
-    Option<Bound<'py, Camera>>,
+    Option<CameraOf>,
     Option<ClipOf>,
     Option<ClipOf>,
-    Option<(u32, u32)>,
+    Option<Size>,
     Bound<'py, PyDict>,
 );
 
@@ -92,9 +92,9 @@ fn act<R: Send>(
     act: impl FnOnce(Frame<'_>) -> Result<R> + Send,
 ) -> PyResult<R> {
     let settings = settings_of(settings)?;
-    let given = camera.as_ref().map(|camera| camera.get().camera);
+    let given = camera.as_ref().map(|camera| &camera.0);
     let acted = py.detach(|| {
-        let camera = camera_of(given.as_ref(), *size, of)?;
+        let camera = camera_of(given, size.as_ref().map(|size| size.0), of)?;
         let pixels = u64::from(camera.width) * u64::from(camera.height);
         check_room(pixels, 64, "pixels")?; // so much takes one while it is drawn and read back
         let in_scene = |clip: &ClipOf| clip.0.region.resolve(|| of.bounds());
@@ -253,10 +253,11 @@ impl Renderer {
             let slice = Slice::new(&frame.scene, &plane);
             slice.load(&mut state.headless, &frame.settings)?;
             let seen = (&frame.camera, &frame.clip, &frame.settings);
-            Ok(Picture::new(
-                slice.picture(&mut state.headless, seen, None)?,
-                None,
-            ))
+            let mut picture = slice.picture(&mut state.headless, seen, None)?;
+            if let Some(background) = frame.settings.background {
+                picture.put_before(background);
+            }
+            Ok(Picture::new(picture, None))
         })
     }
 

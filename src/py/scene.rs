@@ -231,6 +231,12 @@ pub(crate) fn load(
 pub(crate) fn merged(py: Python<'_>, scene: SceneOf) -> PyResult<Gaussians> {
     let mut all = SceneLayers::default();
     for layer in scene.layers.iter().filter(|layer| layer.state.visible) {
+        if let Some(LayerClip::Region(_)) = layer.clip {
+            let name = &layer.name;
+            let message =
+                format!("layer '{name}' has a clip of its own; bake it by rara.bake(scene)");
+            return Err(invalid(message));
+        }
         let mut loaded = LoadedLayer::new(layer.name.clone(), layer.state, None);
         loaded.gaussians = layer.set.gaussians.clone();
         all.layers.push(loaded);

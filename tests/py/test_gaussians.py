@@ -102,16 +102,19 @@ def test_quaternions_are_normalised(gaussians):
         ("means", lambda a: np.where(a == a[7], np.nan, a), r"means\[7\] is .*not finite"),
         ("means", lambda a: a + np.float64(1e39), r"means\[0\] is .*not finite"),
         ("quats", lambda a: a[:9], r"quats has the shape \[9, 4\]; give \[500, 4\]"),
-        ("quats", lambda a: 0 * a, r"quats\[0\] is .*no unit quaternion"),
+        ("quats", lambda a: 0 * a, r"quats\[0\] is .*give a rotation"),
         ("scales", lambda a: -a, r"scales\[0\] is .*zero or above"),
         ("opacities", lambda a: a[:, None], r"opacities has the shape \[500, 1\]; give \[500\]"),
         ("opacities", lambda a: a + 2, r"opacities\[0\] is .*between 0 and 1"),
         ("sh", lambda a: a[:, :5], "sh has K = 5 of .*; give 1, 4, 9 or 16"),
         ("sh", lambda a: [["x"]], "sh is an array of <U1"),
+        ("colors", lambda a: np.where(np.arange(500)[:, None] == 7, np.nan, a), r"colors\[7\] is NaN"),
     ],
 )
 def test_wrong_arrays_are_named(gaussians, name, wrong, said):
     given = dict(zip(("means", "quats", "scales", "opacities", "sh"), arrays(gaussians)))
+    if name == "colors":
+        given["colors"] = given.pop("sh")[:, 0]
     given[name] = wrong(given[name])
     with pytest.raises(rara.InvalidError, match=said), np.errstate(over="ignore"):
         rara.Gaussians(**given)
@@ -197,6 +200,8 @@ def test_baking_keeps_properties(gaussians, renderer):
     baked = scene[0].gaussians
     assert len(baked) == counts["visible"] + counts["left"] + counts["children"] < len(gaussians)
     assert len(baked.properties["number"]) == len(baked)
+    with pytest.raises(rara.InvalidError, match="'own' has a clip of its own"):
+        rara.Scene([rara.Layer("own", labelled, clip="plane:0,1,0,0")]).merged()
     layers = rara.Scene([rara.Layer("own", labelled, (0.1, 0, 0), clip="plane:0,1,0,0"), rara.Layer("whole", labelled, clip="whole")])
     scene, _ = rara.bake(layers, "plane:1,0,0,0")
     assert [layer.clip for layer in scene] == [None, None] and scene[0].position == (0.1, 0, 0)

@@ -68,6 +68,25 @@ def test_clips_combine_as_their_texts_do(renderer, gaussians):
     assert isinstance(rara.Sphere((0, 0, 0), 1), rara.Clip)
 
 
+@pytest.mark.parametrize(
+    ("make", "said"),
+    [
+        (lambda: rara.Sphere((1, 2), 3), r"centre is \(1, 2\); give 3 finite numbers"),
+        (lambda: rara.Sphere((0, 0, 0), np.nan), "radius is nan; give a finite number"),
+        (lambda: rara.Polygon("z;0,0", [[0, 0]]), "axis is 'z;0,0'"),
+        (lambda: rara.Polygon("z", np.zeros((3, 3))), r"corners has the shape \[3, 3\]; give \[N, 2\]"),
+        (lambda: rara.Sphere((0, 0, 0), 1) & "sphear:1", "clip: column 1"),
+        (lambda: rara.Plane((0, 0, 1)).between("plane:0,0,1,1", 2), "share is 2"),
+        (lambda: rara.Layer("a", rara.generate("general", 1), position=(0, 0)), r"position is \(0, 0\); give 3"),
+        (lambda: rara.section(rara.generate("general", 1), "x", 1.5), "at is 1.5"),
+        (lambda: rara.Picture(np.zeros((2, 2, 4), np.uint8)), "pixels is an array of integers"),
+    ],
+)
+def test_wrong_parts_are_named(make, said):
+    with pytest.raises(rara.InvalidError, match=said):
+        make()
+
+
 def test_a_mesh_keeps_its_inside(tmp_path):
     corners = "v 0 0 1\nv 0.9 0 -0.5\nv -0.5 0.8 -0.5\nv -0.5 -0.8 -0.5\n"
     (tmp_path / "cutter.obj").write_text(corners + "f 1 2 3\nf 1 3 4\nf 1 4 2\nf 2 4 3\n")
@@ -77,6 +96,18 @@ def test_a_mesh_keeps_its_inside(tmp_path):
     with pytest.raises(rara.Error, match="is not closed"):
         rara.Mesh(tmp_path / "open.obj")
     assert rara.Mesh(tmp_path / "open.obj", winding=True).keeps([[0, 0, 0]]) == [True]
+    # What was read stays, whatever becomes of the file, and any name is one.
+    (tmp_path / "cutter.obj").rename(tmp_path / "a, (1);scale=3.obj")
+    both = clip & "plane:0,0,1,-3" & ~clip | rara.Sphere((0, 0, 9), 1)
+    assert list(both.keeps([[0, 0, 9], [0, 0, 3.1]])) == [True, False]
+    assert rara.Mesh(tmp_path / "a, (1);scale=3.obj").keeps([[0, 0, 0.9]]) == [True]
+    with pytest.raises(rara.IoError) as failed:
+        rara.Mesh(tmp_path / "cutter.obj")
+    assert failed.value.filename == str(tmp_path / "cutter.obj") and failed.value.errno == 2
+    deep = rara.Sphere((0, 0, 0), 1)
+    with pytest.raises(rara.InvalidError, match="deeper"):
+        for _ in range(30):
+            deep = (deep & "plane:0,0,1,0") | "sphere:0,0,0,1"
 
 
 def test_clips_keep_to_their_files(tmp_path, gaussians):
@@ -128,6 +159,8 @@ def test_pictures_are_arrays(renderer, gaussians):
         ({"moode": "exact"}, "there is no setting 'moode'"),
         ({"clip": "sphear:1"}, "clip: column 1"),
         ({"clip": 3}, "clip is a .*int.*give a rara.Clip"),
+        ({"camera": "plane:z=40%"}, "camera is a .*str.*a clip by clip="),
+        ({"size": (-1, 10)}, "size is .*-1, 10.*; give a width and a height"),
         ({"size": (0, 10)}, "0x10"),
         ({"size": (10**6, 10**6)}, "1000000x1000000"),
         ({"background": (1, 2)}, "background"),
@@ -237,6 +270,7 @@ def test_sections_and_slices_are_those_of_the_program(program, renderer, file, t
     np.testing.assert_array_equal(picture.array, expected.array)
     expected = drawn(program, tmp_path / "b.exr", file, "--section", "axial=40%", "--slice")
     np.testing.assert_array_equal(renderer.slice(scene, shot).array, expected.array)
+    assert renderer.slice(scene, shot, background=(1, 0, 0)).array[..., 3].min() == 1
 
 
 def test_panoramas_are_those_of_the_program(program, renderer, file, tmp_path):

@@ -82,7 +82,9 @@ def test_tensors_come_back_as_tensors(renderer, gaussians, given, monkeypatch):
         ({"radius_clip": 3}, "radius_clip"),
         ({"width": 0}, "width, height: a picture of 0x48"),
         ({"width": 10**9}, "1000000000x48"),
-        ({"colors": np.zeros((500, 5, 3)), "sh_degree": 2}, "colors has K = 5"),
+        ({"colors": np.zeros((500, 5, 3)), "sh_degree": 2}, r"colors has the shape \[500, 5, 3\]; give .*at least 9"),
+        ({"sh_degree": 7}, "sh_degree is 7; give 0 to 3"),
+        ({"background": (1, 1, 1)}, "background is not an argument here"),
         ({"moode": 0}, "there is no setting 'moode'"),
     ],
 )

@@ -1,7 +1,7 @@
 """rara draws 3D Gaussian Splatting scenes by Vulkan, and cuts them exactly."""
 
-from ._rara import Camera, Clip, Gaussians, Picture, compare, devices, generate, orbit, path
-from .clips import Box, Capsule, Cone, Cylinder, Ellipsoid, Mesh, Plane, Polygon, Slab, Sphere
+from ._rara import Camera, Clip, Gaussians, Mesh, Picture, compare, devices, generate, orbit, path
+from .clips import Box, Capsule, Cone, Cylinder, Ellipsoid, Plane, Polygon, Slab, Sphere
 from .drawing import Renderer, Shot, section, sweep, truth
 from .errors import (
     BudgetError, DeviceError, DeviceLostError, Error, FormatError, InvalidError, IoError, OutOfMemoryError, ValidationError,

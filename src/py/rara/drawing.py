@@ -50,7 +50,7 @@ class Renderer(_rara.Renderer):
         clip: Optional[ClipLike] = None,
         *,
         section: Optional[ClipLike] = None,
-        size: Optional[tuple[int, int]] = None,
+        size: Optional[Sequence[int]] = None,
         **settings: Any,
     ) -> Picture:
         """Draws a picture of a scene."""
@@ -63,12 +63,15 @@ class Renderer(_rara.Renderer):
         camera: Optional[Camera] = None,
         clip: Optional[ClipLike] = None,
         *,
-        size: Optional[tuple[int, int]] = None,
+        size: Optional[Sequence[int]] = None,
         ahead: int = 2,
         progress: bool = False,
         **settings: Any,
     ) -> Iterator[Picture]:
-        """Draws a picture for each shot, camera or clip, so many `ahead` on a thread. `progress` shows a bar if tqdm is installed."""
+        """Draws a picture for each shot, camera or clip, so many `ahead` on a thread, for which as many more shots are asked for.
+        `progress` shows a bar if tqdm is installed."""
+        if isinstance(shots, (str, Clip, Camera, Shot)):
+            raise InvalidError(f"shots is a {type(shots).__name__}; give several, as in a list")
         waiting: deque[Future[Picture]] = deque()
         bar = _bar(total=len(shots) if isinstance(shots, Sequence) else None) if progress else None
         with ThreadPoolExecutor(1, "rara") as thread:
@@ -99,7 +102,7 @@ class Renderer(_rara.Renderer):
         *,
         names: Sequence[str] = ("depth", "normal", "layer", "weight", "count"),
         section: Optional[ClipLike] = None,
-        size: Optional[tuple[int, int]] = None,
+        size: Optional[Sequence[int]] = None,
         **settings: Any,
     ) -> dict[str, NDArray[np.float32]]:
         """Draws what pixels are made of, float32 [height, width] by name: the mean "depth" along the view axis, world units; the
@@ -116,11 +119,12 @@ class Renderer(_rara.Renderer):
         camera: Optional[Camera] = None,
         clip: Optional[ClipLike] = None,
         *,
-        size: Optional[tuple[int, int]] = None,
+        size: Optional[Sequence[int]] = None,
         **settings: Any,
     ) -> dict[str, NDArray[Any]]:
         """Finds the Gaussian that adds most to each pixel of a rectangle (left, top, width, height): its "layer" and its
-        "number" in the scene, int64 [height, width], -1 where there is none, and the "alpha" that it adds, float32."""
+        "number" in the scene, which counts on from layer to layer, int64 [height, width], -1 where there is none, and the "alpha"
+        that it adds, float32."""
         found = self._pick((scene, camera, clip, None, size, settings), rect)
         return dict(zip(("layer", "number", "alpha"), found))
 
@@ -150,7 +154,7 @@ def truth(
     clip: Optional[ClipLike] = None,
     *,
     section: Optional[ClipLike] = None,
-    size: Optional[tuple[int, int]] = None,
+    size: Optional[Sequence[int]] = None,
     **settings: Any,
 ) -> Picture:
     """Draws a picture by the reference, on the processor in double precision: slow, and what errors are measured against."""
@@ -162,7 +166,7 @@ def section(
     axis: str,
     at: float,
     *,
-    size: tuple[int, int] = (1024, 1024),
+    size: Sequence[int] = (1024, 1024),
     up: Optional[Sequence[float]] = None,
     scale: Optional[float] = None,
     thickness: Optional[float] = None,
@@ -172,6 +176,8 @@ def section(
     `at` is a share, 0 to 1, of the scene's bounds. `thickness` is that of a slab, and `scale` the world units to a pixel;
     without them all that is behind the plane is kept and shown. All sections across an axis have one scale.
     """
+    if not 0 <= at <= 1:
+        raise InvalidError(f"at is {at}; give a share from 0 to 1")
     for name, length in (("scale", scale), ("thickness", thickness)):
         if length is not None and not 0 < length < np.inf:
             raise InvalidError(f"{name} is {length}; give a finite number above zero")
@@ -181,5 +187,7 @@ def section(
 
 def sweep(start: ClipLike, end: ClipLike, frames: int, scene: Optional[SceneLike] = None) -> list[Clip]:
     """Returns clips that move from one to another of the same shapes. `scene` is for lengths in percent."""
+    if not 1 <= frames <= 1_000_000:
+        raise InvalidError(f"frames is {frames}; give 1 to 1000000")
     first = start if isinstance(start, Clip) else Clip(start)
     return [first.between(end, at / max(frames - 1, 1), scene) for at in range(frames)]

@@ -45,6 +45,10 @@ def rasterize(
         raise InvalidError(f"camera_model is {camera_model!r}; give pinhole or ortho")
     if radius_clip:
         raise InvalidError(f"radius_clip is {radius_clip}; rara draws small splats too: give 0")
+    if sh_degree not in (None, 0, 1, 2, 3):
+        raise InvalidError(f"sh_degree is {sh_degree}; give 0 to 3, or None for colors")
+    if "background" in settings:
+        raise InvalidError("background is not an argument here; give backgrounds")
     matrices = _array("viewmats", viewmats, (None, 4, 4))
     count = len(matrices)
     lenses = _array("Ks", Ks, (count, 3, 3))
@@ -54,7 +58,10 @@ def rasterize(
     if per_camera and len(shown) != count:
         raise InvalidError(f"colors has the shape {list(shown.shape)}; give [N, 3], or [{count}, N, 3] for each camera")
     if sh_degree is not None:
-        shown = shown[:, : (sh_degree + 1) ** 2] if shown.ndim == 3 else shown
+        wanted = (sh_degree + 1) ** 2
+        if shown.ndim != 3 or shown.shape[1] < wanted:
+            raise InvalidError(f"colors has the shape {list(shown.shape)}; give [N, K, 3], K at least {wanted} for sh_degree {sh_degree}")
+        shown = shown[:, :wanted]
 
     def made(of: NDArray[Any]) -> Gaussians:
         coloured: dict[str, Any] = {"colors": np.maximum(of, 0)} if sh_degree is None else {"sh": of}
@@ -75,7 +82,7 @@ def rasterize(
     stats = []
     for at, camera in enumerate(cameras):
         camera = camera.replace(near_cut=near_plane, clip_far=far_plane if far_plane < 1e10 else None)
-        of = scene or made(shown[at])
+        of = made(shown[at]) if scene is None else scene
         picture = renderer.render(of, camera, clip, **settings)
         alphas[at] = picture.array[..., 3:]
         if channels:

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _rara
 from ._rara import Gaussians
-from .clips import ClipLike
+from .clips import ClipLike, _numbers
 from .errors import InvalidError
 
 SceneLike = Union["Scene", "Layer", Gaussians]
@@ -35,6 +35,10 @@ class Layer:
     opacity: float = 1.0
     visible: bool = True
     clip: Optional[ClipLike] = None
+
+    def __post_init__(self) -> None:
+        for name, given, count in (("position", self.position, 3), ("rotation", self.rotation, 4)):
+            object.__setattr__(self, name, tuple(_numbers(name, given, count)))
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -59,7 +63,7 @@ class Scene:
         """Two corners of the box that holds all but the outermost percent of the centres at each end of each axis."""
         return _rara.bounds(self)
 
-    def replace(self, name: str, **changes: Any) -> Scene:
+    def replace(self, name: str, /, **changes: Any) -> Scene:
         """Returns the scene with changes of the layer of a name: `scene.replace("skin", opacity=0.5, clip="plane:x=50%")`.
 
         A renderer that has the scene on its device uploads nothing again for that.
@@ -69,8 +73,8 @@ class Scene:
         return dataclasses.replace(self, layers=layers)
 
     def merged(self) -> Gaussians:
-        """Returns one set of the visible layers, where they are placed and as faded, with the properties that all of them have. Clips of
-        layers are not in it: `rara.bake` bakes them. InvalidError names layers that were trained differently."""
+        """Returns one set of the visible layers, where they are placed and as faded, with the properties that all of them
+        have. InvalidError names layers that were trained differently, and a layer with a clip of its own: `rara.bake` bakes it."""
         return _rara.merged(self)
 
     def save(self, path: Union[str, PathLike[str]], *, up: Optional[Sequence[float]] = None) -> int:

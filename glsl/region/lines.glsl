@@ -46,10 +46,22 @@ float measure_to(uint measure, float t, float front) {
     return phi(t);
 }
 
+// Surfaces whose stretches of a line are found once, where that is worth the memory: not on GPUs, whose registers it would take.
+const uint KNOWN_STRETCHES = 8u;
+#ifdef RARA_SUBGROUP
+#define KEEPS_STRETCHES (!MESHES)
+#else
+#define KEEPS_STRETCHES false
+#endif
+
 // The measure of what the surfaces keep of a line from `start` to `end`, one stretch between crossings after the other.
 float measured(uint base, uint count, vec3 at, vec3 direction, float start, float end, uint measure, float front) {
     float total = 0.0;
     float before = measure_to(measure, start, front);
+    Stretch known[KNOWN_STRETCHES];
+    for (uint i = 0u; KEEPS_STRETCHES && i < min(count, KNOWN_STRETCHES); i++) {
+        known[i] = stretch_of(entry_of(base, i), at, direction);
+    }
     for (float t = start; t < end;) {
         float next = end;
         uint stack = 0u;
@@ -60,7 +72,12 @@ float measured(uint base, uint count, vec3 at, vec3 direction, float start, floa
                 keeps = faces_keep(base, faces, at, direction, t, next);
                 i += faces.count;
             } else {
-                Stretch stretch = stretch_of(entry_of(base, i), at, direction);
+                Stretch stretch;
+                if (KEEPS_STRETCHES && i < KNOWN_STRETCHES) {
+                    stretch = known[i];
+                } else {
+                    stretch = stretch_of(entry_of(base, i), at, direction);
+                }
                 next = stretch.start > t ? min(next, stretch.start) : next;
                 next = stretch.end > t ? min(next, stretch.end) : next;
                 // The side of what comes next on the line.

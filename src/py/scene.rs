@@ -189,26 +189,27 @@ pub(crate) fn load(
     let (mut loaded, up) = read.map_err(raised)?;
     // Those of several layers are not known by layer.
     let mut annotations = Some(take(&mut loaded.annotations)).filter(|_| loaded.layers.len() == 1);
-    let layers = (0..loaded.layers.len()).map(|at| {
-        let properties = loaded.properties_of(at);
-        let layer = &mut loaded.layers[at];
+    let properties = (0..loaded.layers.len()).map(|number| loaded.properties_of(number));
+    let properties: Vec<_> = properties.collect();
+    let layers = loaded.layers.into_iter().zip(properties);
+    let layers = layers.map(|(layer, properties)| {
         let set = Set {
             properties,
-            gaussians: take(&mut layer.gaussians),
+            gaussians: layer.gaussians,
             annotations: annotations.take(),
             report: Report::default(),
-            numbers: layer.numbers.take(),
+            numbers: layer.numbers,
         };
-        let (placed, name) = (layer.state.placement, take(&mut layer.name));
+        let placed = layer.state.placement;
         let DQuat { x, y, z, w } = placed.rotation();
         let (position, turn) = (placed.position().into(), [w, x, y, z]);
         let LayerState {
             opacity, visible, ..
         } = layer.state;
-        let (set, clip) = (set.into(), layer.clip.as_ref().map(ToString::to_string));
+        let clip = layer.clip.map(|clip| clip.to_string());
         (
-            name,
-            set,
+            layer.name,
+            set.into(),
             position,
             turn,
             placed.scale(),

@@ -162,6 +162,18 @@ def test_selections_become_layers(tmp_path, gaussians, renderer):
         rara.load(tmp_path / "scene.ply", progress=lambda done, total: 1 / 0)
 
 
+def test_layers_of_several_files_have_their_own_properties(tmp_path, gaussians):
+    for name, first in (("one", 0), ("other", 1000)):
+        labels = first + np.arange(len(gaussians))
+        rara.Gaussians(*arrays(gaussians), properties={"label": labels}).save(tmp_path / f"{name}.ply")
+    scene = rara.load(tmp_path / "one.ply", tmp_path / "other.ply", select=["one/faint=opacity<0.5"])
+    for layer in scene:
+        labels = layer.gaussians.properties["label"].astype(int)
+        assert (labels >= 1000).all() == (layer.name == "other") and len(labels) == len(layer.gaussians)
+        np.testing.assert_array_equal(layer.gaussians.means, gaussians.means[labels % 1000])
+    assert [layer.name for layer in scene] == ["one", "faint", "other"]
+
+
 def test_masks_and_transforms(gaussians):
     taken = gaussians.select("opacity<0.5")
     np.testing.assert_array_equal(taken, gaussians.opacities < 0.5)

@@ -12,7 +12,8 @@ use rara_base::files::write_atomically;
 use rara_shots::{Depths, Ease, Framing, Lens, Orbit, Sections, Spline, UP, Visible};
 
 use crate::arrays::{Array, fixed, owned};
-use crate::errors::{check_room, choice, invalid, of_argument, raised};
+use crate::clip::Clip;
+use crate::errors::{called, check_room, choice, invalid, of_argument, raised};
 use crate::scene::SceneOf;
 
 /// The size of pictures where nothing else is said, as of the command line.
@@ -132,12 +133,10 @@ impl Camera {
         let Some(view) = view else {
             return made(load_camera(&path));
         };
-        let view = view.str()?.to_string();
         let cameras = load_cameras(&path).map_err(raised)?;
-        let found = cameras.iter().find(|camera| camera.name() == view);
-        let found = found.or_else(|| cameras.get(view.parse::<usize>().ok()?));
+        let found = called(cameras.iter().map(NamedCamera::name), &view)?;
         let missing = || invalid(format!("view: {} has no camera '{view}'", path.display()));
-        named(found.ok_or_else(missing)?, undistort)
+        named(&cameras[found.ok_or_else(missing)?], undistort)
     }
 
     /// Reads all cameras of a file or a COLMAP folder, with their names.
@@ -322,7 +321,7 @@ pub(crate) fn path(
     })
 }
 
-/// The camera of a section, and its clip as a text: across an axis, "x" or "sagittal", "y" or "coronal", "z" or "axial" ("!" sees it
+/// The camera of a section, and its clip: across an axis, "x" or "sagittal", "y" or "coronal", "z" or "axial" ("!" sees it
 /// from the other side), at a share from 0 to 1 of the scene's bounds. `thickness` is that of a slab, and `scale` the world units to
 /// a pixel; without them all that is behind the plane is kept and shown.
 #[pyfunction]
@@ -337,7 +336,7 @@ pub(crate) fn section(
     up: Option<[f64; 3]>,
     scale: Option<f64>,
     thickness: Option<f64>,
-) -> PyResult<(Camera, String)> {
+) -> PyResult<(Camera, Clip)> {
     let unknown = || {
         invalid(format!(
             "axis: there is no '{axis}'; give x, y, z, sagittal, coronal or axial"
@@ -360,5 +359,5 @@ pub(crate) fn section(
         1 => shapes.remove(0),
         _ => Expression::All(shapes),
     };
-    Ok((section.camera.into(), clip.to_string()))
+    Ok((section.camera.into(), clip.into()))
 }

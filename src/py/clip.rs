@@ -6,7 +6,7 @@ use glam::DQuat;
 use pyo3::prelude::*;
 use rara::clip::{Expression, MeshShape};
 use rara::scene::layers::{LayerClip, Region};
-use rara::{MeshRule, Placement};
+use rara::{MeshRule, Placement, Result};
 
 use crate::errors::{invalid, of_argument, raised};
 
@@ -21,7 +21,7 @@ pub(crate) struct Clip {
     /// The text.
     #[pyo3(get)]
     pub(crate) text: String,
-    /// What it means. The files that it names have been read.
+    /// The text's meaning; the files that it names have been read.
     pub(crate) region: Region,
 }
 
@@ -59,16 +59,24 @@ impl Mesh {
         position: [f64; 3],
         winding: bool,
     ) -> PyResult<PyClassInitializer<Self>> {
-        let [w, x, y, z] = rotation;
-        let placement = Placement::new(position.into(), DQuat::from_xyzw(x, y, z, w), scale);
         let rule = match winding {
             true => MeshRule::Winding,
             false => MeshRule::Closed,
         };
-        let mesh = placement.and_then(|placement| MeshShape::read(path, rule, placement));
+        let mesh = placement(position, rotation, scale)
+            .and_then(|placement| MeshShape::read(path, rule, placement));
         let mesh = Expression::Mesh(mesh.map_err(raised)?);
         Ok(PyClassInitializer::from(Clip::from(mesh)).add_subclass(Self))
     }
+}
+
+/// The placement of what is scaled, turned by a quaternion w, x, y, z, and then moved.
+pub(crate) fn placement(
+    position: [f64; 3],
+    [w, x, y, z]: [f64; 4],
+    scale: f64,
+) -> Result<Placement> {
+    Placement::new(position.into(), DQuat::from_xyzw(x, y, z, w), scale)
 }
 
 /// A clip as an argument: a `rara.Clip`, or a text.

@@ -1,4 +1,4 @@
-//! What clips can do in Python.
+//! The methods that clips have in Python.
 
 use std::path::PathBuf;
 
@@ -12,7 +12,7 @@ use rara_base::files::write_atomically;
 
 use crate::arrays::{Array, numbers, owned};
 use crate::clip::{Clip, ClipOf};
-use crate::errors::{invalid, raised};
+use crate::errors::{called, invalid, raised};
 use crate::scene::SceneOf;
 
 #[pymethods]
@@ -95,13 +95,9 @@ impl Clip {
     #[pyo3(signature = (path, name=None))]
     fn load(path: PathBuf, name: Option<Bound<'_, PyAny>>) -> PyResult<Self> {
         let mut clips = load_clips(&path).map_err(raised)?;
-        let name = name.map(|name| name.str().map(|name| name.to_string()));
-        let found = match name.transpose()? {
+        let found = match name {
             None => Some(0).filter(|_| clips.len() == 1),
-            Some(name) => {
-                let called = clips.iter().position(|clip| clip.name == name);
-                called.or_else(|| name.parse().ok().filter(|at| *at < clips.len()))
-            }
+            Some(name) => called(clips.iter().map(|clip| &clip.name[..]), &name)?,
         };
         let found = found.map(|at| clips.swap_remove(at)).ok_or_else(|| {
             let names: Vec<_> = clips.iter().map(|clip| clip.name.as_str()).collect();

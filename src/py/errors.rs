@@ -9,12 +9,8 @@ use serde::Serialize;
 
 /// The exception of an error: that of its kind, with its message.
 pub(crate) fn raised(error: Error) -> PyErr {
-    let mut io = None;
-    let kind = match &error {
-        Error::Io { path, source } => {
-            io = Some((path.clone().into_os_string(), source.raw_os_error()));
-            "IoError"
-        }
+    let kind = match error {
+        Error::Io { .. } => "IoError",
         Error::Format { .. } => "FormatError",
         Error::Invalid(_) => "InvalidError",
         Error::Device(_) => "DeviceError",
@@ -31,9 +27,9 @@ pub(crate) fn raised(error: Error) -> PyErr {
             .and_then(|errors| errors.getattr(kind));
         let made = made.and_then(|kind| {
             let made = kind.call1((error.to_string(),))?;
-            if let Some((path, code)) = io {
-                made.setattr("filename", path)?;
-                made.setattr("errno", code)?;
+            if let Error::Io { path, source } = &error {
+                made.setattr("filename", path.as_os_str())?;
+                made.setattr("errno", source.raw_os_error())?;
             }
             Ok(made)
         });
@@ -54,6 +50,16 @@ pub(crate) fn of_argument(name: &str) -> impl Fn(Error) -> PyErr {
 /// The choice of a name.
 pub(crate) fn choice<T: FromStr<Err = Error>>(name: &str, text: &str) -> PyResult<T> {
     text.parse().map_err(of_argument(name))
+}
+
+/// The place of what an argument calls by its name, or by its number.
+pub(crate) fn called<'a>(
+    names: impl ExactSizeIterator<Item = &'a str>,
+    name: &Bound<'_, PyAny>,
+) -> PyResult<Option<usize>> {
+    let (count, name) = (names.len(), name.str()?.to_string());
+    let named = names.into_iter().position(|one| one == name);
+    Ok(named.or_else(|| name.parse().ok().filter(|number| *number < count)))
 }
 
 /// Refuses at once what the memory does not hold; a failed allocation later would end the process.

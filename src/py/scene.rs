@@ -12,9 +12,9 @@ use rara::scene::layers::{
     LayerClip, LoadedLayer, Region, SceneLayers, SelectionRequest, entries, load_by,
 };
 use rara::scene::{Bounds, load_layer, load_with, trained_folder};
-use rara::{BakeCounts, BakeSettings, Clip, Error, LayerState, Placement, Result, Scene};
+use rara::{BakeCounts, BakeSettings, Clip, Error, LayerState, Result, Scene};
 
-use crate::clip::{ClipOf, own_clip};
+use crate::clip::{ClipOf, own_clip, placement};
 use crate::errors::{choice, invalid, of_argument, plain, raised};
 use crate::gaussians::{Gaussians, Report, Set};
 
@@ -42,9 +42,7 @@ pub(crate) struct Layer {
 
 impl Layer {
     fn of(given: &LayerFields<'_>) -> PyResult<Self> {
-        let [w, x, y, z] = given.rotation;
-        let rotation = DQuat::from_xyzw(x, y, z, w);
-        let placement = Placement::new(given.position.into(), rotation, given.scale);
+        let placement = placement(given.position, given.rotation, given.scale);
         let placement = placement.map_err(of_argument(&given.name))?;
         let state = LayerState::default().placement(placement);
         let state = state.opacity(given.opacity).visible(given.visible);

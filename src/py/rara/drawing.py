@@ -182,7 +182,7 @@ def section(
         if length is not None and not 0 < length < np.inf:
             raise InvalidError(f"{name} is {length}; give a finite number above zero")
     camera, plane = _rara.section(scene, axis, at, size=size, up=up, scale=scale, thickness=thickness)
-    return Shot(camera, section=Clip(plane))
+    return Shot(camera, section=plane)
 
 
 def sweep(start: ClipLike, end: ClipLike, frames: int, scene: Optional[SceneLike] = None) -> list[Clip]:

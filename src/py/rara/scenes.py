@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _rara
-from ._rara import Gaussians
+from ._rara import Clip, Gaussians
 from .clips import ClipLike, _numbers
 from .errors import InvalidError
 
@@ -39,6 +39,9 @@ class Layer:
     def __post_init__(self) -> None:
         for name, given, count in (("position", self.position, 3), ("rotation", self.rotation, 4)):
             object.__setattr__(self, name, tuple(_numbers(name, given, count)))
+        # A text would be parsed, and its mesh read, for each picture.
+        if isinstance(self.clip, str) and self.clip.strip() != "whole":
+            object.__setattr__(self, "clip", Clip(self.clip))
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -79,7 +82,7 @@ class Scene:
 
     def save(self, path: Union[str, PathLike[str]], *, up: Optional[Sequence[float]] = None) -> int:
         """Writes `merged` to a file as `Gaussians.save` does; `up` is by default that of the scene."""
-        return self.merged().save(path, up=up or self.up)
+        return self.merged().save(path, up=self.up if up is None else up)
 
     def __getitem__(self, key: Union[int, str]) -> Layer:
         if isinstance(key, int):
